@@ -1,8 +1,9 @@
 /* A vehicle for karst in one file of C, without a dependency: a point mass in a room, with a LiDAR.
  *
  *   cc -O2 -std=c11 -o point_mass point_mass.c -lm && ./point_mass tcp:127.0.0.1:14660
- *   karst fly --set vehicle=socket --set socket.address=tcp:14660 --set localization.source=pose_sensor
- * --time 60s karst vehicle check tcp:127.0.0.1:14660 --fly
+ *   karst vehicle check tcp:127.0.0.1:14660 --fly
+ *   karst fly --set vehicle=socket --set socket.address=tcp:14660 \
+ *             --set localization.source=pose_sensor --time 60s
  *
  * It flies in lockstep and in real time. The protocol is that of docs/vehicle_protocol.md, version 1, for a
  * machine whose numbers are little-endian. Replace the part "the vehicle" to put one of your own behind it.
@@ -36,9 +37,11 @@ static const int64_t kMs = 1000000, kSecond = 1000000000;
 /* -- messages
  * ------------------------------------------------------------------------------------------------------ */
 
+enum { LAST_WORD = 256 }; /* bytes that are kept free for it */
 typedef struct {
   unsigned char bytes[1 << 18];
   size_t size, begin; /* begin: of the message that is being written */
+  size_t sent;        /* of the first messages: what is before is gone */
 } Out;
 
 static void put(Out* o, const void* data, size_t size) {
@@ -332,24 +335,57 @@ static int64_t machine_time(void) {
   return t.tv_sec * kSecond + t.tv_nsec;
 }
 
+/* Waits for the client: for what is no step of a vehicle that flies by itself. */
 static bool send_all(int fd, Out* o) {
-  size_t sent = 0;
-  while (sent < o->size) {
-    const ssize_t n = send(fd, o->bytes + sent, o->size - sent, MSG_NOSIGNAL);
+  while (o->sent < o->size) {
+    const ssize_t n = send(fd, o->bytes + o->sent, o->size - o->sent, MSG_NOSIGNAL);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return false;
-    sent += (size_t)n;
+    o->sent += (size_t)n;
   }
-  o->size = 0;
+  o->size = o->sent = 0;
   return true;
 }
 
-static bool tell(int fd, Out* o, uint16_t type, const char* text) {
-  o->size = 0;
+/* Never waits. What does not fit stays in `o`. */
+static bool send_some(int fd, Out* o) {
+  while (o->sent < o->size) {
+    const ssize_t n = send(fd, o->bytes + o->sent, o->size - o->sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
+    if (n <= 0) return false;
+    o->sent += (size_t)n;
+  }
+  memmove(o->bytes, o->bytes + o->sent, o->size - o->sent);
+  o->size -= o->sent;
+  o->sent = 0;
+  return true;
+}
+
+/* Sends `from` behind what waits in `to`, without waiting. A client that is behind loses measurements and
+ * pongs, but no change of state. */
+static bool offer(int fd, Out* to, Out* from) {
+  const bool behind = to->size > sizeof to->bytes / 4;
+  for (size_t at = 0; at < from->size;) {
+    uint32_t size;
+    uint16_t type;
+    memcpy(&size, from->bytes + at, 4);
+    memcpy(&type, from->bytes + at + 4, 2);
+    const size_t room = sizeof to->bytes - LAST_WORD - to->size;
+    if (8 + size <= room && (!behind || type >= GROUND || type == DONE))
+      put(to, from->bytes + at, 8 + size);
+    at += 8 + size;
+  }
+  from->size = 0;
+  return send_some(fd, to);
+}
+
+/* A last word. */
+static void tell(int fd, Out* o, uint16_t type, const char* text) {
   begin(o, type);
   put_text(o, text);
   end(o);
-  return send_all(fd, o);
+  send_some(fd, o);
 }
 
 /* 1: a message; 0: none within `wait_ms`; -1: the client is gone, or sends what is no message. */
@@ -382,6 +418,7 @@ static void refuse_others(int listener) {
   while (poll(&one, 1, 0) > 0) {
     const int other = accept(listener, NULL, NULL);
     if (other < 0) return;
+    refusal.size = refusal.sent = 0;
     tell(other, &refusal, REFUSE, "another client flies this vehicle");
     close(other);
   }
@@ -436,6 +473,8 @@ static const char* fly_lockstep(int listener, Client* client, Vehicle* v, Out* o
         vehicle_step(v, o, now);
       }
       put_stamped(o, DONE, now);
+    } else if (m->type == PING && m->size == 8) {
+      put_pong(o, m, now, now);
     } else {
       return "a message that has no place here";
     }
@@ -443,20 +482,23 @@ static const char* fly_lockstep(int listener, Client* client, Vehicle* v, Out* o
   return "the client is gone";
 }
 
-/* Steps by this machine's clock. A client that is gone leaves a vehicle that comes down by itself. */
+/* Steps by this machine's clock, whether the client reads or not: `o` keeps what could not be sent. A client
+ * that is gone leaves a vehicle that comes down by itself. */
 static const char* fly_real_time(int listener, Client* client, Vehicle* v, Out* o, Message* m) {
+  static Out step;
   const int64_t begun = machine_time();
   int64_t now = 0, heard = 0;
   const char* leaving = NULL;
-  put_stamped(o, DONE, 0);
-  put_stamped(o, GROUND, 0);
-  put_battery(o, v, 0);
+  step.size = 0;
+  put_stamped(&step, DONE, 0);
+  put_stamped(&step, GROUND, 0);
+  put_battery(&step, v, 0);
   while (!leaving || !(v->standing || v->lost)) {
     while (now + STEP <= machine_time() - begun) {
       now += STEP;
-      vehicle_step(v, o, now);
-      if (leaving) o->size = 0;
-      if (!leaving && !send_all(client->fd, o)) leaving = "the client is gone";
+      vehicle_step(v, &step, now);
+      if (leaving) step.size = 0;
+      if (!leaving && !offer(client->fd, o, &step)) leaving = "the client is gone";
     }
     refuse_others(listener);
     if (leaving) {
@@ -474,8 +516,8 @@ static const char* fly_real_time(int listener, Client* client, Vehicle* v, Out* 
       v->commanded_at = now;
     } else if (m->type == PING && m->size == 8) {
       const int64_t received = machine_time() - begun;
-      put_pong(o, m, received, machine_time() - begun);
-      if (!send_all(client->fd, o)) leaving = "the client is gone";
+      put_pong(&step, m, received, machine_time() - begun);
+      if (!offer(client->fd, o, &step)) leaving = "the client is gone";
     } else {
       leaving = m->type == BYE ? "the client left" : "a message that has no place here";
     }
@@ -483,7 +525,7 @@ static const char* fly_real_time(int listener, Client* client, Vehicle* v, Out* 
   return leaving;
 }
 
-static const char* serve(int listener, Client* client, Out* o, Message* m) {
+static const char* serve(int listener, Client* client, Out* o, Message* m, bool* flew) {
   static Vehicle vehicle;
   int clock = -1;
   vehicle_init(&vehicle);
@@ -508,6 +550,7 @@ static const char* serve(int listener, Client* client, Out* o, Message* m) {
       put_description(o);
       end(o);
     } else if (m->type == START) {
+      *flew = true;
       return clock == LOCKSTEP ? fly_lockstep(listener, client, &vehicle, o, m)
                                : fly_real_time(listener, client, &vehicle, o, m);
     } else if (m->type == PING && m->size == 8) {
@@ -557,11 +600,12 @@ int main(int argc, char** argv) {
     const int on = 1;
     client.fd = accept(listener, NULL, NULL);
     if (client.fd < 0) continue;
-    client.size = out.size = 0;
+    bool flew = false;
+    client.size = out.size = out.sent = 0;
     setsockopt(client.fd, IPPROTO_TCP, TCP_NODELAY, &on,
                sizeof on); /* fails on a unix socket, where it is not needed */
-    const char* why = serve(listener, &client, &out, &message);
-    tell(client.fd, &out, REFUSE, why);
+    const char* why = serve(listener, &client, &out, &message, &flew);
+    tell(client.fd, &out, flew ? BYE : REFUSE, why);
     close(client.fd);
     printf("%s\n", why);
     fflush(stdout);

@@ -22,6 +22,7 @@ WELCOME, REFUSE, CHECKS, SCHEDULE, PAUSE, DONE, PONG = range(32, 39)
 IMU, MAGNETOMETER, BAROMETER, POSE, BATTERY, LIDAR = range(48, 54)
 GROUND, LIFT_OFF, AUTHORITY, LOST = range(57, 61)
 LOCKSTEP, REAL_TIME = 0, 1
+MAX_WAITING = 1 << 16  # bytes for a client that reads too slowly
 MS, S = 1_000_000, 1_000_000_000
 
 
@@ -226,9 +227,19 @@ class Gone(Exception):
     """The client is gone, or does not keep the protocol."""
 
 
+def changes_of(data):
+    """Of whole messages, those that tell a change of the vehicle's state."""
+    while data:
+        size, kind, _ = struct.unpack_from("<IHH", data)
+        if kind >= GROUND or kind == DONE:
+            yield data[:8 + size]
+        data = data[8 + size:]
+
+
 class Client:
     def __init__(self, connection):
         self.socket, self.bytes, self.unsent = connection, bytearray(), bytearray()
+        self.flying = False  # it has started the vehicle
 
     def messages(self, wait_s):
         """What has come, after waiting for at most `wait_s` (None: for ever)."""
@@ -248,8 +259,21 @@ class Client:
             yield kind, body
 
     def send(self, data):
+        """Waits for the client: for what is no step of a vehicle that flies by itself."""
         self.socket.settimeout(60)
         self.socket.sendall(data)
+
+    def offer(self, data):
+        """Never waits. A client that is behind loses measurements and pongs, but no change of state."""
+        if len(self.unsent) > MAX_WAITING:
+            data = b"".join(changes_of(data))
+        self.unsent += data
+        self.socket.setblocking(False)
+        try:
+            while self.unsent:
+                del self.unsent[:self.socket.send(self.unsent)]
+        except BlockingIOError:
+            pass
 
 
 class Server:
@@ -280,7 +304,7 @@ class Server:
             except (Gone, OSError, struct.error) as why:
                 print("client gone:", why, flush=True)
                 try:
-                    client.send(message(REFUSE, text(str(why))))
+                    client.offer(message(BYE if client.flying else REFUSE, text(str(why))))
                 except OSError:
                     pass
             connection.close()
@@ -288,7 +312,10 @@ class Server:
     def refuse_others(self):
         while select.select([self.socket], [], [], 0)[0]:
             other, _ = self.socket.accept()
-            other.sendall(message(REFUSE, text("another client flies this vehicle")))
+            try:
+                Client(other).offer(message(REFUSE, text("another client flies this vehicle")))
+            except OSError:
+                pass
             other.close()
 
     def next_messages(self, client, wait_s=0.1):
@@ -307,6 +334,7 @@ class Server:
                     clock = body[6]
                     client.send(message(WELCOME, struct.pack("<IHBB", MAGIC, VERSION, *self.clocks) + vehicle.description()))
                 elif kind == START:
+                    client.flying = True
                     return self.lockstep(client, vehicle) if clock == LOCKSTEP else self.real_time(client, vehicle)
                 elif kind == PING:
                     client.send(message(PONG, body + struct.pack("<qq", 0, 0)))
@@ -328,6 +356,8 @@ class Server:
                     slot, now = struct.unpack("<Iq", body)
                     out = vehicle.begin() if slot == 0 else vehicle.step(now)
                     client.send(out + message(DONE, struct.pack("<q", now)))
+                elif kind == PING:
+                    client.send(message(PONG, body + struct.pack("<qq", now, now)))
                 elif kind == BYE:
                     return
                 else:
@@ -335,17 +365,17 @@ class Server:
 
     def real_time(self, client, vehicle):
         """Steps by this machine's clock. A client that is gone leaves a vehicle that comes down by itself."""
-        begin, now, heard, leaving = time.monotonic_ns(), 0, 0, False
-        client.send(message(DONE, struct.pack("<q", 0)) + vehicle.begin())
+        begin, now, heard, leaving = time.monotonic_ns(), 0, 0, ""
+        client.offer(message(DONE, struct.pack("<q", 0)) + vehicle.begin())
         while not (leaving and (vehicle.standing or vehicle.lost)):
             while now + STEP <= time.monotonic_ns() - begin:
                 now += STEP
                 out = vehicle.step(now)
                 if not leaving:
                     try:
-                        client.send(out)
-                    except OSError:
-                        leaving = True
+                        client.offer(out)
+                    except OSError as why:
+                        leaving = str(why)
             wait_s = max(0.0, (now + STEP - (time.monotonic_ns() - begin)) / S)
             if leaving:
                 self.refuse_others()
@@ -358,12 +388,15 @@ class Server:
                         vehicle.obey(Command(body), now)
                     elif kind == PING:
                         received = time.monotonic_ns() - begin
-                        client.send(message(PONG, body + struct.pack("<qq", received, time.monotonic_ns() - begin)))
+                        client.offer(message(PONG, body + struct.pack("<qq", received, time.monotonic_ns() - begin)))
                     else:
-                        leaving = True
-            except (Gone, OSError):
-                leaving = True
-            leaving = leaving or now - heard > 10 * S
+                        leaving = "the client left" if kind == BYE else "a message that has no place here"
+                        break
+            except (Gone, OSError, struct.error) as why:
+                leaving = str(why)
+            if not leaving and now - heard > 10 * S:
+                leaving = "the client is silent"
+        raise Gone(leaving)
 
 
 if __name__ == "__main__":

@@ -36,6 +36,9 @@ from std_msgs.msg import Bool
 import point_mass as karst
 
 
+MAX_WAITING = 1000  # messages of a moment: more are not taken while nobody fetches them
+
+
 class RosVehicle(Node):
     """Keeps what the topics say since the last look, as messages of the protocol."""
 
@@ -70,7 +73,7 @@ class RosVehicle(Node):
 
     def tell(self, kind, body):
         with self.lock:
-            if self.begun is not None:
+            if self.begun is not None and (len(self.waiting) < MAX_WAITING or kind >= karst.GROUND):
                 self.waiting.append(karst.message(kind, body))
 
     def take(self):
@@ -95,10 +98,8 @@ class RosVehicle(Node):
             for column in range(m.width):
                 x, y, z = struct.unpack_from("<fff", m.data, row * m.row_step + column * m.point_step)
                 r = math.sqrt(x * x + y * y + z * z)
-                if math.isnan(r) or r == 0.0:
-                    r = math.inf                              # no echo
-                elif r < self.min_range_m:
-                    r = math.nan                              # no valid measurement
+                if not r >= self.min_range_m:
+                    r = math.nan  # zero, NaN, too near: infinity would claim that all is free up to max_range_m
                 ranges.append(r)
         self.tell(karst.LIDAR, struct.pack("<q", self.stamp(m.header)) + karst.floats(ranges) + karst.floats(intensity)
                   + struct.pack("<II", 0, 0))
@@ -150,19 +151,19 @@ class RealTimeServer(karst.Server):
     def real_time(self, client, vehicle):
         with vehicle.lock:
             vehicle.begun, vehicle.waiting = vehicle.get_clock().now().nanoseconds, []
-        client.send(karst.message(karst.DONE, struct.pack("<q", 0)))
-        client.send(karst.message(karst.GROUND if vehicle.ground else karst.LIFT_OFF, struct.pack("<q", 0)))
+        client.offer(karst.message(karst.DONE, struct.pack("<q", 0)))
+        client.offer(karst.message(karst.GROUND if vehicle.ground else karst.LIFT_OFF, struct.pack("<q", 0)))
         heard = time.monotonic()
         try:
             while time.monotonic() - heard < 10:
-                client.send(vehicle.take())
+                client.offer(vehicle.take())
                 for kind, body in self.next_messages(client, 0.002):
                     heard = time.monotonic()
                     if kind == karst.COMMAND:
                         vehicle.obey(karst.Command(body))
                     elif kind == karst.PING:
                         received = vehicle.now()
-                        client.send(karst.message(karst.PONG, body + struct.pack("<qq", received, vehicle.now())))
+                        client.offer(karst.message(karst.PONG, body + struct.pack("<qq", received, vehicle.now())))
                     else:
                         return
         finally:

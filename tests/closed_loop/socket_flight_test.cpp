@@ -2,11 +2,13 @@
 // or a core that fails in flight.
 #include <signal.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
 #include <thread>
 
+#include "plugins/socket/stream.h"
 #include "tests/closed_loop/command.h"
 
 namespace karst {
@@ -336,6 +338,83 @@ TEST_P(Example, KeepsTheProtocolAndIsFlown) {
   const json metrics = json::parse(bytes_of(folder / "run" / "metrics.json"));
   EXPECT_NEAR(metrics["explored_volume_m3"].get<double>(), 12 * 8 * 4, 60) << "the room's volume";
   fs::remove(address.substr(5));
+}
+/// The next message of a type; null if none comes.
+template <class M>
+std::optional<M> wait_for(socket::Stream& stream, const std::function<void(const socket::ToCore&)>& meanwhile) {
+  for (;;) {
+    while (const auto frame = stream.next()) {
+      std::string problem;
+      const auto message = socket::read_message<socket::ToCore>(*frame, problem);
+      EXPECT_TRUE(message) << problem;
+      if (!message) return std::nullopt;
+      meanwhile(*message);
+      if (const M* found = std::get_if<M>(&*message)) return *found;
+    }
+    if (!stream.receive(socket::Wait(10'000))) return std::nullopt;
+  }
+}
+template <class M>
+std::optional<M> wait_for(socket::Stream& stream) {
+  return wait_for<M>(stream, [](const socket::ToCore&) {});
+}
+template <class M>
+void say(socket::Stream& stream, const M& message) {
+  stream.queue(message);
+  stream.flush(socket::Wait(1000));
+}
+socket::Stream start_of(const std::string& address, socket::FlightClock clock) {
+  auto stream = socket::connect_to(socket::parse_address(address), socket::Wait(5000), socket::kMaxToCoreBytes);
+  socket::Hello hello;
+  hello.clock = clock;
+  say(stream, hello);
+  EXPECT_TRUE(wait_for<socket::Welcome>(stream));
+  say(stream, socket::Start{});
+  EXPECT_TRUE(wait_for<socket::Done>(stream));
+  return stream;
+}
+
+/// A core that is stopped, and does not close: sending to it waited for it, in the loop of the vehicle.
+TEST_P(Example, IsNotHeldUpByACoreThatReadsNothing) {
+  const std::string language = GetParam(), address = address_of("stopped_" + language);
+  const fs::path folder = fresh_folder("socket_example_stopped_" + language);
+  const Background vehicle("exec " + command(language) + address, folder / "vehicle.log");
+  socket::Stream stream = start_of(address, socket::FlightClock::real_time);
+  core::Command rise;
+  rise.rates.armed = true;
+  rise.rates.thrust_n = 20;
+  for (bool up = false; !up;) {
+    say(stream, rise);
+    wait_for<core::ImuSample>(stream, [&](const auto& m) { up |= std::holds_alternative<socket::LiftOff>(m); });
+  }
+  sleep(5);
+  // It came down meanwhile, which is told, and what it measured is not kept for long.
+  core::TimeNs last = 0, longest_gap = 0;
+  const auto imu = [&](const socket::ToCore& m) {
+    if (const auto* sample = std::get_if<core::ImuSample>(&m)) {
+      if (last > 0) longest_gap = std::max(longest_gap, sample->stamp - last);
+      last = sample->stamp;
+    }
+  };
+  const auto ground = wait_for<socket::Ground>(stream, imu);
+  ASSERT_TRUE(ground);
+  for (int i = 0; i < 20; ++i) wait_for<core::ImuSample>(stream, imu);
+  EXPECT_GT(longest_gap, core::kSecond / 2);
+  say(stream, socket::Start{});
+  EXPECT_TRUE(wait_for<socket::Bye>(stream)) << "after a flight no refusal, but a goodbye";
+}
+
+TEST_P(Example, AnswersAPingInLockstep) {
+  const std::string language = GetParam(), address = address_of("ping_" + language);
+  const fs::path folder = fresh_folder("socket_example_ping_" + language);
+  const Background vehicle("exec " + command(language) + address, folder / "vehicle.log");
+  socket::Stream stream = start_of(address, socket::FlightClock::lockstep);
+  say(stream, socket::Ping{77});
+  const auto pong = wait_for<socket::Pong>(stream);
+  ASSERT_TRUE(pong);
+  EXPECT_EQ(pong->ping_sent, 77);
+  say(stream, socket::Run{0, 0});
+  EXPECT_TRUE(wait_for<socket::Done>(stream)) << "the flight goes on";
 }
 INSTANTIATE_TEST_SUITE_P(Languages, Example, ::testing::Values("c", "python"));
 
