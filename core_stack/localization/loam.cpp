@@ -119,10 +119,10 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
 
   const bool full = effort == LoamEffort::full;
   const Features features =
-      sweep.has_rings ? find_features(sweep.points, full ? options_.features : halved(options_.features),
-                                      workspace_.threads)
-                      : find_unordered_features(sweep.points, options_.features, workspace_.threads,
-                                                full ? 1.0 : 0.5);
+      sweep.has_rings
+          ? find_features(sweep.points, full ? options_.features : halved(options_.features),
+                          workspace_.threads)
+          : find_unordered_features(sweep.points, options_.features, workspace_.threads, full ? 1.0 : 0.5);
   const std::size_t count = features.edges.size() + features.planes.size();
   if (count < static_cast<std::size_t>(options_.registration.min_matches)) {
     out.problem = "too few features: " + counted(count, "in ") + counted(sweep.points.size(), "points");

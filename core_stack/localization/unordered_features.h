@@ -20,8 +20,8 @@
 
 namespace karst::core {
 
-/// Points must be finite and not zero. `threads` affects the run time, not the result. About the `fraction` of
-/// the features is found, in cells larger by 1 / sqrt(fraction).
+/// Points must be finite and not zero. `threads` affects the run time, not the result. About the `fraction`
+/// of the features is found, in cells larger by 1 / sqrt(fraction).
 Features find_unordered_features(const std::vector<SweepPoint>& points, const FeatureOptions& options,
                                  int threads, double fraction = 1);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr TimeNs kJump = 50 * core::kMillisecond;
 constexpr TimeNs kSlewDivisor = 100;
-constexpr double kDrift = 15e-6;       // of a clock, as in NTP
+constexpr double kDrift = 15e-6;  // of a clock, as in NTP
 
 }  // namespace
 
@@ -24,7 +24,8 @@ void ClockOffset::add(const RoundTrip& t) {
   const TimeNs out = t.peer_received - t.sent, back = t.peer_sent - t.answered;
   const Sample sample{out + (back - out) / 2, delay, t.answered};
   // Each is right within half of its delay, and clocks drift by far less than 50 ms meanwhile.
-  if (count_ > 0 && std::abs(sample.offset - best().offset) > (sample.delay + best().delay) / 2 + kJump) forget();
+  if (count_ > 0 && std::abs(sample.offset - best().offset) > (sample.delay + best().delay) / 2 + kJump)
+    forget();
   samples_[count_ % samples_.size()] = sample;
   ++count_;
 }

@@ -17,16 +17,17 @@ struct RoundTrip {
 
 class ClockOffset {
  public:
-  /// Ignores a round trip that ended before it began, or with times that cannot be (kMaxTime). One that cannot
-  /// be true together with those before shows that a clock was set: then they are forgotten.
+  /// Ignores a round trip that ended before it began, or with times that cannot be (kMaxTime). One that
+  /// cannot be true together with those before shows that a clock was set: then they are forgotten.
   void add(const RoundTrip& trip);
   /// One of the clocks was set: nothing is known any more.
   void forget() { *this = {}; }
-  /// After eight round trips: one that was slow would give a wrong offset first, and the stamps another order.
+  /// After eight round trips: one that was slow would give a wrong offset first, and the stamps another
+  /// order.
   bool known() const { return count_ >= samples_.size(); }
-  /// The vehicle's clock minus the core's; 0 if it is not known. Between two round trips it moves slowly, and only forward in time,
-  /// so that stamps keep their order: by one part in a hundred of what has passed, but at once if it is off
-  /// by more than 50 ms.
+  /// The vehicle's clock minus the core's; 0 if it is not known. Between two round trips it moves slowly, and
+  /// only forward in time, so that stamps keep their order: by one part in a hundred of what has passed, but
+  /// at once if it is off by more than 50 ms.
   core::TimeNs offset(core::TimeNs now);
   /// Bound of the offset's error: half the delay of the round trip that counts, and 15 ppm of its age.
   core::TimeNs error_bound(core::TimeNs now) const;

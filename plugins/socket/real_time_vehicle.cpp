@@ -89,7 +89,8 @@ void RealTimeVehicle::note_lost_time() {
 }
 
 /// The message with its stamp by the core's clock, if the core is to take it. Until the offset is
-/// known, so is nothing of the vehicle's clock: only what it is and does counts then, and not what it measures.
+/// known, so is nothing of the vehicle's clock: only what it is and does counts then, and not what it
+/// measures.
 std::optional<ToCore> RealTimeVehicle::for_core(ToCore message) {
   const TimeNs now = executive_->measured_now();
   if (const auto* pong = std::get_if<Pong>(&message)) {

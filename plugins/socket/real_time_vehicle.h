@@ -4,9 +4,9 @@
 // A message waits until the core's time has reached its stamp: a core that is late takes what came meanwhile
 // as if it were not. Pings go out ten times a second and serve as the heartbeat, too.
 //
-// An executive that loses time (Executive::lost_time()) sets its clock back, and what was measured meanwhile is
-// out of date. The clocks are compared anew then. Until the first answer, nothing that is measured is taken and
-// no command is sent: it would be for where the vehicle was.
+// An executive that loses time (Executive::lost_time()) sets its clock back, and what was measured meanwhile
+// is out of date. The clocks are compared anew then. Until the first answer, nothing that is measured is
+// taken and no command is sent: it would be for where the vehicle was.
 #pragma once
 #include <memory>
 #include <optional>
@@ -52,9 +52,9 @@ class RealTimeVehicle final : public core::Vehicle {
   std::vector<core::VehicleCheck> checks_;
   OutstandingPings outstanding_;
   ClockOffset offset_;
-  std::optional<ToCore> next_;                 // waits until the core's time has reached its stamp
-  core::TimeNs next_ping_ = 0, heard_at_ = 0;  // by Executive::measured_now()
-  core::TimeNs lost_time_ = 0;                 // of the executive, that is reckoned with
+  std::optional<ToCore> next_;                      // waits until the core's time has reached its stamp
+  core::TimeNs next_ping_ = 0, heard_at_ = 0;       // by Executive::measured_now()
+  core::TimeNs lost_time_ = 0;                      // of the executive, that is reckoned with
   core::Authority steers_ = core::Authority::core;  // as the vehicle says
   bool away_ = false, lost_ = false;                // steered by its autopilot because of silence
 };

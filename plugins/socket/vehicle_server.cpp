@@ -233,7 +233,8 @@ class RealTimeService {
   /// A client that takes nothing for long gets no answers either.
   bool full() const { return client_.stream().backlog_bytes() >= kMaxToCoreBytes; }
 
-  /// From now on it comes down by itself. Nothing waits for the client meanwhile: this is a step of the vehicle.
+  /// From now on it comes down by itself. Nothing waits for the client meanwhile: this is a step of the
+  /// vehicle.
   void end(const std::string& why) {
     ending_ = why;
     ended_at_ = executive_.now();

@@ -341,7 +341,8 @@ TEST_P(Example, KeepsTheProtocolAndIsFlown) {
 }
 /// The next message of a type; null if none comes.
 template <class M>
-std::optional<M> wait_for(socket::Stream& stream, const std::function<void(const socket::ToCore&)>& meanwhile) {
+std::optional<M> wait_for(socket::Stream& stream,
+                          const std::function<void(const socket::ToCore&)>& meanwhile) {
   for (;;) {
     while (const auto frame = stream.next()) {
       std::string problem;
@@ -364,7 +365,8 @@ void say(socket::Stream& stream, const M& message) {
   stream.flush(socket::Wait(1000));
 }
 socket::Stream start_of(const std::string& address, socket::FlightClock clock) {
-  auto stream = socket::connect_to(socket::parse_address(address), socket::Wait(5000), socket::kMaxToCoreBytes);
+  auto stream =
+      socket::connect_to(socket::parse_address(address), socket::Wait(5000), socket::kMaxToCoreBytes);
   socket::Hello hello;
   hello.clock = clock;
   say(stream, hello);
@@ -385,7 +387,8 @@ TEST_P(Example, IsNotHeldUpByACoreThatReadsNothing) {
   rise.rates.thrust_n = 20;
   for (bool up = false; !up;) {
     say(stream, rise);
-    wait_for<core::ImuSample>(stream, [&](const auto& m) { up |= std::holds_alternative<socket::LiftOff>(m); });
+    wait_for<core::ImuSample>(stream,
+                              [&](const auto& m) { up |= std::holds_alternative<socket::LiftOff>(m); });
   }
   sleep(5);
   // It came down meanwhile, which is told, and what it measured is not kept for long.

@@ -101,7 +101,8 @@ TEST(OusterMetadata, WhatCannotBeIsRefusedByItsKey) {
   }
 }
 
-// The formula of Ouster SDK 0.11: point = (r - n) direction + n (cos encoder, sin encoder), in Ouster's frames.
+// The formula of Ouster SDK 0.11: point = (r - n) direction + n (cos encoder, sin encoder), in Ouster's
+// frames.
 TEST(OusterMetadata, BeamsLieWhereTheSdkPutsThem) {
   const OusterMetadata m = test::uneven_ouster(OusterProfile::single, 1024);
   const core::LidarModel model = lidar_model(m, {});

@@ -736,8 +736,8 @@ struct OneThread {
   }
 };
 
-/// Executive::lost_time(): no step sees that it is late, and the clock is set back. Commands were not sent for
-/// half an hour after that.
+/// Executive::lost_time(): no step sees that it is late, and the clock is set back. Commands were not sent
+/// for half an hour after that.
 TEST(RealTime, ACoreWhoseClockWasSetBackSteersAgainAndStampsByTheNewClock) {
   OneThread t;
   t.start();

@@ -132,7 +132,8 @@ TEST(Plausible, TimesNearTheEndsOf64BitsAreRefused) {
     depth.image.stamp = wild;
     Objects objects;
     objects.look.stamp = wild;
-    for (const ToCore& m : {ToCore(imu), ToCore(depth), ToCore(objects), ToCore(Ground{wild}), ToCore(Lost{wild, {}, {}})})
+    for (const ToCore& m :
+         {ToCore(imu), ToCore(depth), ToCore(objects), ToCore(Ground{wild}), ToCore(Lost{wild, {}, {}})})
       EXPECT_EQ(implausible(m, vehicle()), "stamp: is no time");
     EXPECT_EQ(implausible(ToCore(Pong{0, wild, 0}), vehicle()), "sent: is no time");
     EXPECT_EQ(implausible(ToCore(Pong{0, 0, wild}), vehicle()), "sent: is no time");
