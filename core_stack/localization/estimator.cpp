@@ -94,6 +94,7 @@ void Estimator::on_imu(const ImuSample& imu) {
 void Estimator::bridge(const ImuSample& expected, Expected how) {
   if (!lidar_.started() || !is_finite(expected) || expected.stamp <= state().stamp) return;
   const double noise = how == Expected::as_commanded ? kBridgeNoise : kAnotherSteersNoise;
+  if (how == Expected::another_steers) guessed_until_ = expected.stamp;
   stand_in(lidar_, expected, noise);
   stand_in(magnetic_, expected, noise);
   if (newcomer_) stand_in(*newcomer_, expected, noise);
@@ -176,7 +177,7 @@ void Estimator::on_magnetometer(const MagnetometerSample& mag) {
     last_bad_input_ = mag.stamp;
     return;
   }
-  if (!lidar_.started() || mag.stamp <= newest_mag_ || mag.stamp < state().stamp - kStale) return;
+  if (guesses() || !lidar_.started() || mag.stamp <= newest_mag_ || mag.stamp < state().stamp - kStale) return;
   newest_mag_ = mag.stamp;
   const Compass::Reading reading = compass_.read(mag, magnetic_.state().orientation);
   if (reading.valid)
@@ -190,7 +191,8 @@ void Estimator::on_barometer(const BarometerSample& barometer) {
     last_bad_input_ = barometer.stamp;
     return;
   }
-  if (!lidar_.started() || barometer.stamp <= newest_height_ || barometer.stamp < state().stamp - kStale)
+  // The covariance of a guess is so wide that a sample's noise would become speed: 0.5 m of height, 1 m/s.
+  if (guesses() || !lidar_.started() || barometer.stamp <= newest_height_ || barometer.stamp < state().stamp - kStale)
     return;
   newest_height_ = barometer.stamp;
   if (active().height_sigma_m() < kHeightKnown_m) height_offset_.learn(barometer, state().position.z());

@@ -38,7 +38,7 @@ struct Command {
   AttitudeRateCommand rates;    // by the core's own controllers
   Reference reference;          // for an autopilot with controllers of its own
   State state;                  // for an autopilot without a position of its own
-  bool state_is_known = false;  // false: the core does not know where it is
+  bool state_is_known = false;  // false: the core does not know where it is, or only guesses
 };
 
 }  // namespace karst::core

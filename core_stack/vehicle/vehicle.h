@@ -38,6 +38,7 @@ struct VehicleDescription {
   bool pose_sensor = false;                   // its poses come by themselves
   bool detects_objects = false;               // it looks for objects of interest
   Authority authority = Authority::core;      // who steers it at the start
+  bool takes_reference = false;               // it flies Command.reference by controllers of its own
   Pose T_world_start;  // the pose it stands at before take-off, in the mission's world frame
 };
 

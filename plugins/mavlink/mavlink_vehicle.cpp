@@ -52,6 +52,7 @@ MavlinkVehicle::MavlinkVehicle(const MavlinkOptions& o, Parts parts)
       take_off_at_(kNever),
       disarm_at_(kNever) {
   description_.authority = Authority::pilot;
+  description_.takes_reference = o.control == Control::position;
   if (scans_) description_.lidar = scans_->model();
 }
 

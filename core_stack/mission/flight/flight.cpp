@@ -43,6 +43,7 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
       tracker_(options.tracker, options.motion),
       controller_(options.controller, vehicle.mass_kg, vehicle.max_thrust_n, vehicle.max_body_rate_radps),
       mass_(vehicle.mass_kg),
+      takes_reference_(vehicle.takes_reference),
       emergency_landing_(options.motion, options.mission.landing_speed_mps) {
   emergency_.max_acceleration_mps2 = kEmergencyFraction * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
@@ -52,7 +53,8 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
 }
 
 Command Flight::command(TimeNs now) const {
-  return {command_, tracker_.reference(), state(), estimator_.health(now) != Health::lost};
+  const bool known = estimator_.health(now) != Health::lost && !estimator_.guesses();
+  return {command_, tracker_.reference(), state(), known};
 }
 
 Command Flight::control(TimeNs now) {
@@ -61,24 +63,30 @@ Command Flight::control(TimeNs now) {
     return command(now);
   }
   // Up to the time that the IMU would tell of by now: samples that come late are not to come too late.
-  if (now - imu_came_ > kImuMissed)
-    estimator_.bridge(expected_imu(now - imu_lag_),
-                      steers_ ? Estimator::Expected::as_commanded : Estimator::Expected::another_steers);
+  if (now - imu_came_ > kImuMissed) bridge(now - imu_lag_);
   if (!steers_) {
     command_ = {Vec3::Zero(), mass_.mass_kg() * kGravity_mps2, true};
     return command(now);
   }
-  mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
-  controller_.set_mass_kg(mass_.mass_kg());
+  if (!takes_reference_) {
+    mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
+    controller_.set_mass_kg(mass_.mass_kg());
+  }
   const Trajectory& wanted = emergency_landing_.begun() ? emergency_landing_.trajectory(now) : trajectory_;
   command_ = controller_.update(state(), tracker_.step(wanted, now), kControlPeriod_s);
   command_.armed = true;
   return command(now);
 }
 
-/// The IMU measurement expected if the vehicle follows its commands.
-ImuSample Flight::expected_imu(TimeNs now) const {
-  return {now, Vec3(0, 0, command_.thrust_n / mass_.mass_kg()), command_.body_rate_radps};
+/// With the IMU measurement expected if the vehicle follows its commands. What controllers of its own do,
+/// nobody knows here: the thrust and the rates of this side were flown by nobody.
+void Flight::bridge(TimeNs until) {
+  using Expected = Estimator::Expected;
+  if (steers_ && !takes_reference_)
+    estimator_.bridge({until, Vec3(0, 0, command_.thrust_n / mass_.mass_kg()), command_.body_rate_radps},
+                      Expected::as_commanded);
+  else
+    estimator_.bridge({until, Vec3(0, 0, kGravity_mps2), Vec3::Zero()}, Expected::another_steers);
 }
 
 void Flight::follow(const Course& c) {

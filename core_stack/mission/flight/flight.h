@@ -119,7 +119,7 @@ class Flight {
  private:
   CommittedSegment committed_segment(TimeNs t, double length_m) const;
   Vec3 velocity_at(TimeNs t) const;
-  ImuSample expected_imu(TimeNs now) const;
+  void bridge(TimeNs until);
   Command command(TimeNs now) const;
   void arm(TimeNs now);
   Departure departure_at(TimeNs t) const;
@@ -129,6 +129,7 @@ class Flight {
   MpcTracker tracker_;
   Se3Controller controller_;
   MassEstimate mass_;
+  bool takes_reference_;
   AttitudeRateCommand command_;
   double ground_m_ = 0;  // height of the vehicle's centre before take-off
   Trajectory trajectory_;
