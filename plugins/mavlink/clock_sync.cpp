@@ -11,6 +11,10 @@ constexpr core::TimeNs kTooLong = core::kSecond;
 }  // namespace
 
 void ClockSync::note_answer(core::TimeNs asked_at, core::TimeNs autopilot_time, core::TimeNs now) {
+  // Bytes from a link may say any time: beyond this, 73 years, differences could overflow.
+  constexpr core::TimeNs kFarthest = core::TimeNs{1} << 61;
+  if (std::max({asked_at, autopilot_time}) >= kFarthest || std::min({asked_at, autopilot_time}) <= -kFarthest)
+    return;
   const core::TimeNs round_trip = now - asked_at;
   if (round_trip < 0 || round_trip > kTooLong) return;
   while (!exchanges_.empty() && exchanges_.front().at < now - kWindow) exchanges_.pop_front();

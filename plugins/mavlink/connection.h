@@ -34,6 +34,7 @@ class Connection {
   void receive();
   std::optional<Frame> next();
 
+  Address own() const { return own_; }
   Address peer() const { return peer_; }
   const TrafficById& sent() const { return sent_; }
   const TrafficById& received() const { return received_; }

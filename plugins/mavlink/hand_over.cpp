@@ -61,6 +61,7 @@ void HandOver::on_heartbeat(const Heartbeat& heartbeat, TimeNs now) {
   heartbeat_at_ = now;
   const bool armed = (heartbeat.base_mode & kArmed) != 0;
   if (armed && !armed_) followed_since_armed_ = false;
+  seen_disarmed_ = seen_disarmed_ || !armed;
   armed_ = armed;
   const Mode mode = mode_of(firmware_, heartbeat.custom_mode);
   if (!mode_ || mode_->name != mode.name) on_mode(mode, heartbeat.system_status >= kCritical, now);
@@ -103,7 +104,7 @@ HandOver::Steering HandOver::steering(TimeNs now) {
 bool HandOver::asks(TimeNs now, bool streaming) {
   if (!streaming || !connected(now) || silent_ || !armed_ || follows_setpoints()) return false;
   if (asked_at_ && now - *asked_at_ < kAskAgain) return false;
-  const bool first = engage_ == Engage::arming && standing_ && !followed_since_armed_;
+  const bool first = engage_ == Engage::arming && seen_disarmed_ && standing_ && !followed_since_armed_;
   const bool again = resume_ == Resume::after_link_loss && left_for_silence_;
   if (!first && !again) return false;
   asked_at_ = now;

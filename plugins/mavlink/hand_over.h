@@ -68,7 +68,8 @@ class HandOver {
   Engage engage_;
   Resume resume_;
   std::optional<Mode> mode_;
-  bool armed_ = false, standing_ = true;
+  bool armed_ = false, standing_ = false;
+  bool seen_disarmed_ = false;  // since the start
   std::optional<core::TimeNs> heard_at_, heartbeat_at_, asked_at_;
   bool silent_ = false;
   bool steered_before_silence_ = false;             // the next heartbeat tells what became of it

@@ -16,7 +16,7 @@ class LidarScans final : public ScanSource {
     constexpr core::TimeNs kStep = 5 * core::kMillisecond;
     executive.every("lidar", executive.now() + kStep, kStep,
                     [this, &executive, receive = std::move(receive)] {
-                      for (auto& scan : receiver_->poll(executive.now())) receive(std::move(scan));
+                      for (auto& scan : receiver_->poll(executive.measured_now())) receive(std::move(scan));
                     });
   }
 

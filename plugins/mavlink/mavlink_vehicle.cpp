@@ -21,6 +21,8 @@ constexpr double kHeartbeat_hz = 1, kTimesync_hz = 10, kTakeOffAgain_hz = 0.5, k
 constexpr double kGravity_mps2 = 9.81;
 /// PX4 grants offboard after a second of setpoints.
 constexpr TimeNs kStreamFirst = kSecond + 200 * kMillisecond, kStreamBroken = kSecond / 2;
+constexpr TimeNs kTooLate = 100 * kMillisecond;  // of the loop, for a command
+constexpr double kJump_m = 0.5;                  // between two states 10 ms apart: localization was corrected
 constexpr TimeNs kNever = -3600 * kSecond;  // long before the start
 /// There and back, up to which the form of control was flown (docs/results/mavlink_flights.md).
 constexpr double kMaxRoundTrip_ms = 210, kMaxRatesRoundTrip_ms = 30;
@@ -77,8 +79,17 @@ bool MavlinkVehicle::due(TimeNs& last, double rate_hz) const {
 }
 
 void MavlinkVehicle::step() {
+  const TimeNs measured = executive_->measured_now();
+  if (executive_->lost_time() != lost_time_) clock_ = {};  // the executive's clock was set back
+  lost_time_ = executive_->lost_time();
   connection_.receive();
-  while (const std::optional<Frame> frame = connection_.next()) take(*frame);
+  while (const std::optional<Frame> frame = connection_.next()) {
+    if (frame->is<Timesync>()) answer(frame->as<Timesync>(), measured);
+    arrived_.push_back({measured, *frame});
+  }
+  // A loop that is late catches up: each frame is taken in the step in which it came.
+  for (; !arrived_.empty() && arrived_.front().first <= now(); arrived_.pop_front())
+    take(arrived_.front().second);
   report_steering();
   keep_in_touch();
   held_.release(telemetry_.imu_stamp(), now());
@@ -88,20 +99,27 @@ void MavlinkVehicle::take(const Frame& frame) {
   hand_over_.on_any_message(now());
   if (frame.is<Heartbeat>()) hand_over_.on_heartbeat(frame.as<Heartbeat>(), now());
   if (frame.is<Statustext>()) hand_over_.on_text(frame.as<Statustext>(), now());
-  if (frame.is<Timesync>()) answer(frame.as<Timesync>());
-  if (frame.is<CommandAck>()) commands_.on_ack(frame.as<CommandAck>());
+  if (frame.is<CommandAck>()) take_ack(frame.as<CommandAck>());
   if (frame.is<ParamValue>()) parameters_.on_value(frame.as<ParamValue>());
   if (frame.is<ExtendedSysState>()) report_steering();  // who steers comes before what happened
   telemetry_.take(frame, clock_, now(), *sink_);
   hand_over_.on_ground(telemetry_.standing());
 }
 
+/// Another system may command the same autopilot; 0 counts as any.
+void MavlinkVehicle::take_ack(const CommandAck& m) {
+  const Address own = connection_.own();
+  if ((m.target_system == 0 || m.target_system == own.system) &&
+      (m.target_component == 0 || m.target_component == own.component))
+    commands_.on_ack(m);
+}
+
 /// The autopilot asks, too: by this it finds when a pose was true that it gets from us.
-void MavlinkVehicle::answer(const Timesync& m) {
+void MavlinkVehicle::answer(const Timesync& m, TimeNs measured) {
   if (m.tc1 == 0)
-    connection_.send(Timesync{now(), m.ts1, connection_.peer().system, connection_.peer().component});
+    connection_.send(Timesync{measured, m.ts1, connection_.peer().system, connection_.peer().component});
   else
-    clock_.note_answer(m.ts1, m.tc1, now());
+    clock_.note_answer(m.ts1, m.tc1, measured);
 }
 
 void MavlinkVehicle::report_steering() {
@@ -117,7 +135,7 @@ void MavlinkVehicle::keep_in_touch() {
     connection_.send(Heartbeat{0, kOnboardController, kNoAutopilot, 0, kActive, 3});
   }
   if (due(timesync_at_, kTimesync_hz))
-    connection_.send(Timesync{0, now(), connection_.peer().system, connection_.peer().component});
+    connection_.send(Timesync{0, executive_->measured_now(), connection_.peer().system, connection_.peer().component});
   if (!hand_over_.connected(now())) return commands_.clear();
   ask_for_telemetry();
   ask_for_setpoint_mode();
@@ -133,13 +151,14 @@ void MavlinkVehicle::add_command(Cmd number, std::array<float, 7> p, CommandQueu
   commands_.add(addressed(m), std::move(done));
 }
 
-/// Again and again as long as the IMU does not come at half the rate: the autopilot may have started anew.
+/// Again and again as long as the IMU does not come at half the rate, as the autopilot may have started anew,
+/// or as it has not said whether it stands.
 void MavlinkVehicle::ask_for_telemetry() {
   const TimeNs since = now() - telemetry_at_;
   if (!due(telemetry_at_, kTelemetryAgain_hz)) return;
   const auto samples = static_cast<double>(telemetry_.imu_samples() - imu_before_);
   imu_before_ = telemetry_.imu_samples();
-  if (samples > 0.5 * options_.imu_rate_hz * core::seconds(since)) return;
+  if (samples > 0.5 * options_.imu_rate_hz * core::seconds(since) && telemetry_.landed_known()) return;
   if (commands_.waits_for(Cmd::set_message_interval)) return;
   const auto ask = [this](std::uint32_t id, double rate_hz) {
     add_command(Cmd::set_message_interval,
@@ -173,16 +192,23 @@ void MavlinkVehicle::ask_for_setpoint_mode() {
 
 void MavlinkVehicle::command(const core::Command& c) {
   if (executive_ == nullptr) return;
+  // What a loop that catches up commands was meant for earlier.
+  if (executive_->measured_now() - now() > kTooLate) return;
+  const double since_s = core::seconds(c.state.stamp - state_.stamp);
+  if (state_known_ && (state_.position + since_s * state_.velocity_mps - c.state.position).norm() > kJump_m)
+    ++pose_resets_;
   state_ = c.state;
   state_known_ = c.state_is_known;
   commanded_ = true;
   if (c.state_is_known && c.state.stamp > 0 && due(vision_at_, options_.vision_rate_hz))
-    connection_.send(vision(c.state));
+    connection_.send(vision(c.state, pose_resets_));
   if (hand_over_.steering(now()).who == Authority::core) {
     landed_ = flown_ && !c.rates.armed;
     if (landed_) return disarm_on_ground();
     flown_ = flown_ || c.rates.armed;
     lift_off(c);
+  } else {
+    flown_ = landed_ = false;
   }
   const bool waits_for_take_off = options_.firmware == Firmware::ardupilot &&
                                   options_.control == Control::position && telemetry_.standing();

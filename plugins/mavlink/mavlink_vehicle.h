@@ -1,7 +1,9 @@
 // A vehicle whose autopilot is reached by MAVLink. The autopilot tells of its sensors, its mode and its
 // failsafes, and flies what the core commands while the pilot has handed over.
 #pragma once
+#include <deque>
 #include <memory>
+#include <utility>
 
 #include "plugins/mavlink/command_queue.h"
 #include "plugins/mavlink/connection.h"
@@ -42,7 +44,8 @@ class MavlinkVehicle final : public core::Vehicle {
   core::TimeNs now() const { return executive_->now(); }
   void step();
   void take(const Frame& frame);
-  void answer(const Timesync& m);
+  void take_ack(const CommandAck& m);
+  void answer(const Timesync& m, core::TimeNs measured);
   void report_steering();
   void keep_in_touch();
   void ask_for_telemetry();
@@ -70,6 +73,8 @@ class MavlinkVehicle final : public core::Vehicle {
   HandOver hand_over_;
   Telemetry telemetry_;
   HeldMessages held_;
+  std::deque<std::pair<core::TimeNs, Frame>> arrived_;  // with the measured time, oldest first
+  core::TimeNs lost_time_ = 0;                          // of the executive
 
   core::Executive* executive_ = nullptr;
   core::VehicleSink* sink_ = nullptr;
@@ -77,6 +82,7 @@ class MavlinkVehicle final : public core::Vehicle {
   HandOver::Steering reported_;
   core::State state_;  // as commanded last, and whether it is known
   bool state_known_ = false;
+  std::uint8_t pose_resets_ = 0;  // jumps of the state
   bool commanded_ = false;  // ever
   std::optional<core::TimeNs> streams_since_, setpoint_at_;
   // When each was sent last.

@@ -40,8 +40,8 @@ std::vector<ParameterRule> px4_rules(Control control, double hover_thrust) {
       within("COM_OF_LOSS_T", "at most 1 s", 0, 1),
       one_of("COM_OBL_RC_ACT", "4 (land) or 5 (hold)", {4, 5}),
       bits("COM_RCL_EXCEPT", "bit 2 set: flies on without the pilot's radio in offboard", 4),
-      one_of("NAV_RCL_ACT", "not 2 (return)", {0, 1, 3, 5, 6}),
-      one_of("NAV_DLL_ACT", "not 2 (return)", {0, 1, 3, 5, 6}),
+      one_of("NAV_RCL_ACT", "1 (hold) or 3 (land)", {1, 3}),
+      one_of("NAV_DLL_ACT", "0 (off), 1 (hold) or 3 (land)", {0, 1, 3}),
       one_of("COM_LOW_BAT_ACT", "0 (warning) or 2 (land)", {0, 2}),
       bits("EKF2_EV_CTRL", "bits 0, 1 and 3 set: position, height and yaw by external vision", 11),
       one_of("EKF2_HGT_REF", "3 (vision)", {3}),
@@ -60,6 +60,7 @@ std::vector<ParameterRule> ardupilot_rules(Control control, double hover_thrust)
                                    one_of("EK3_SRC1_POSXY", "6 (external navigation)", {6}),
                                    one_of("EK3_SRC1_POSZ", "6 (external navigation)", {6}),
                                    one_of("EK3_SRC1_VELXY", "6 (external navigation)", {6}),
+                                   one_of("EK3_SRC1_VELZ", "6 (external navigation) or 0 (none)", {0, 6}),
                                    one_of("EK3_SRC1_YAW", "6 (external navigation)", {6}),
                                    within("GUID_TIMEOUT", "at most 3 s", 0.1, 3),
                                    one_of("FS_GCS_ENABLE", "0 (off) or 5 (land)", {0, 5}),
@@ -69,6 +70,7 @@ std::vector<ParameterRule> ardupilot_rules(Control control, double hover_thrust)
                                    one_of("BATT_FS_CRT_ACT", "0 (warning) or 1 (land)", {0, 1})};
   if (control == Control::rates) {
     rules.push_back(bits("GUID_OPTIONS", "bit 3 set: thrust is thrust, and no climb rate", 8));
+    rules.push_back(one_of("ATC_ANGLE_BOOST", "0: the core's thrust holds the tilt already", {0}));
     rules.push_back(hover("MOT_THST_HOVER", hover_thrust));
   }
   return rules;

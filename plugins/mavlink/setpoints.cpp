@@ -48,8 +48,9 @@ SetPositionTargetLocalNed position_target(const core::Reference& r, double ahead
   return m;
 }
 
-Odometry vision(const core::State& s) {
+Odometry vision(const core::State& s, std::uint8_t resets) {
   Odometry m;
+  m.reset_counter = resets;
   m.time_usec = static_cast<std::uint64_t>(s.stamp / 1000);
   const Vec3 p = ned_of_enu(s.position);
   m.x = f(p.x()), m.y = f(p.y()), m.z = f(p.z());
@@ -60,7 +61,7 @@ Odometry vision(const core::State& s) {
   m.pose_covariance[0] = m.velocity_covariance[0] = std::numeric_limits<float>::quiet_NaN();  // not given
   m.frame_id = kLocalFrd;
   m.child_frame_id = kBodyFrd;
-  m.estimator_type = 6;  // MAV_ESTIMATOR_TYPE_LIDAR
+  m.estimator_type = kVision;
   m.quality = 100;
   return m;
 }

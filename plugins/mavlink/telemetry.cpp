@@ -33,13 +33,17 @@ std::optional<TimeNs> Telemetry::imu_time(std::uint64_t usec, const ClockSync& c
 }
 
 void Telemetry::pass_imu(TimeNs stamp, const Vec3& force_frd, const Vec3& rate_frd, core::VehicleSink& sink) {
+  // Beyond what such a sensor can measure; not a number is beyond it, too.
+  constexpr double kMaxForce_mps2 = 400, kMaxRate_radps = 100;
+  if (!(force_frd.norm() < kMaxForce_mps2) || !(rate_frd.norm() < kMaxRate_radps)) return;
   imu_stamp_ = stamp;
   ++imu_samples_;
   sink.on_imu({stamp, flu_of_frd(force_frd), flu_of_frd(rate_frd)});
 }
 
 void Telemetry::pass_pressure(TimeNs stamp, double hpa, core::VehicleSink& sink) {
-  if (!(hpa > 0)) return;
+  constexpr double kLowest_hpa = 100, kHighest_hpa = 1500;
+  if (!(hpa > kLowest_hpa && hpa < kHighest_hpa)) return;
   if (!first_hpa_) first_hpa_ = hpa;
   sink.on_barometer({stamp, height_by_pressure_m(hpa, *first_hpa_)});
 }
@@ -50,8 +54,9 @@ void Telemetry::take_highres(const HighresImu& m, const ClockSync& clock, TimeNs
   if (!stamp) return;
   pass_imu(*stamp, Vec3f(m.xacc, m.yacc, m.zacc).cast<double>(),
            Vec3f(m.xgyro, m.ygyro, m.zgyro).cast<double>(), sink);
-  if ((m.fields_updated & kMagUpdated) != 0)
-    sink.on_magnetometer({*stamp, flu_of_frd(kGauss_ut * Vec3f(m.xmag, m.ymag, m.zmag).cast<double>())});
+  const Vec3f field(m.xmag, m.ymag, m.zmag);
+  if ((m.fields_updated & kMagUpdated) != 0 && field.allFinite())
+    sink.on_magnetometer({*stamp, flu_of_frd(kGauss_ut * field.cast<double>())});
   if ((m.fields_updated & kPressureUpdated) != 0)
     pass_pressure(*stamp, static_cast<double>(m.abs_pressure), sink);
 }
@@ -112,12 +117,14 @@ void Telemetry::take(const Frame& frame, const ClockSync& clock, TimeNs now, cor
       return take_landed(frame.as<ExtendedSysState>(), now, sink);
     case LocalPositionNed::kId: {
       const auto m = frame.as<LocalPositionNed>();
-      position_ = enu_of_ned(Vec3f(m.x, m.y, m.z).cast<double>());
+      if (const Vec3f p(m.x, m.y, m.z); p.allFinite()) position_ = enu_of_ned(p.cast<double>());
       return;
     }
     case AttitudeQuaternion::kId: {
       const auto m = frame.as<AttitudeQuaternion>();
-      orientation_ = enu_flu_of_ned_frd(Eigen::Quaternionf(m.q1, m.q2, m.q3, m.q4).cast<double>());
+      const Eigen::Quaternionf q(m.q1, m.q2, m.q3, m.q4);
+      constexpr float kUnit = 0.1f;
+      if (std::abs(q.norm() - 1) < kUnit) orientation_ = enu_flu_of_ned_frd(q.normalized().cast<double>());
       return;
     }
     default:

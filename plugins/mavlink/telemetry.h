@@ -20,7 +20,9 @@ class Telemetry {
   /// Of the newest IMU sample, in our clock; nothing before the first.
   std::optional<core::TimeNs> imu_stamp() const { return imu_stamp_; }
   std::uint64_t imu_samples() const { return imu_samples_; }
-  bool standing() const { return standing_; }
+  /// As the autopilot says; false before it has said anything.
+  bool standing() const { return landed_known_ && standing_; }
+  bool landed_known() const { return landed_known_; }
   /// The autopilot's own position and attitude, world frame.
   const std::optional<core::Vec3>& position() const { return position_; }
   const std::optional<core::Quat>& orientation() const { return orientation_; }

@@ -51,6 +51,8 @@ std::map<std::string, double> parameters_of(const AutopilotFirmwareOptions& o, d
          {"EK3_SRC1_POSXY", 6},
          {"EK3_SRC1_POSZ", 6},
          {"EK3_SRC1_VELXY", 6},
+         {"EK3_SRC1_VELZ", 6},
+         {"ATC_ANGLE_BOOST", 0},
          {"EK3_SRC1_YAW", 6},
          {"GUID_TIMEOUT", 3},
          {"FS_GCS_ENABLE", 5},
@@ -168,6 +170,7 @@ void Autopilot::note_setpoint() {
 /// The pose is stamped by the computer's clock; before that is known, it counts from its arrival.
 void Autopilot::take_vision(const mavlink::Odometry& m) {
   if (m.frame_id != mavlink::kLocalFrd || m.child_frame_id != mavlink::kBodyFrd) return;
+  if (options_.firmware == mavlink::Firmware::px4 && m.estimator_type > mavlink::kVio) return;
   const Quat attitude = Eigen::Quaternionf(m.q[0], m.q[1], m.q[2], m.q[3]).cast<double>().normalized();
   if (!attitude.coeffs().allFinite()) return;
   const TimeNs stamp = clock_.known() ? clock_.ours(static_cast<TimeNs>(m.time_usec) * 1000) : own_time(now_);

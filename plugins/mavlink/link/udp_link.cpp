@@ -54,7 +54,8 @@ void UdpLink::send(std::span<const std::uint8_t> bytes) {
 /// A datagram from elsewhere is dropped: another program must not steer, nor take over the link.
 void UdpLink::receive(std::vector<std::uint8_t>& into) {
   std::array<std::uint8_t, 65536> datagram;
-  for (;;) {
+  constexpr int kMost = 256;  // in one step: a flood must not hold up the loop
+  for (int i = 0; i < kMost; ++i) {
     sockaddr_in from{};
     socklen_t size = sizeof from;
     const ssize_t n = ::recvfrom(socket_.get(), datagram.data(), datagram.size(), 0,

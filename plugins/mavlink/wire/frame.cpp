@@ -94,9 +94,13 @@ std::optional<Frame> FrameParser::next() {
 
 void LossCount::note(const Frame& f) {
   std::optional<std::uint8_t>& next = next_[f.from.component];
-  if (next) lost_ += static_cast<std::uint8_t>(f.sequence - *next);
-  next = static_cast<std::uint8_t>(f.sequence + 1);
+  // A frame that comes twice, or behind a later one, looks like a gap of almost 256.
+  constexpr std::uint8_t kGreatestGap = 128;
+  const auto gap = static_cast<std::uint8_t>(next ? f.sequence - *next : 0);
   ++received_;
+  if (gap > kGreatestGap) return;
+  lost_ += gap;
+  next = static_cast<std::uint8_t>(f.sequence + 1);
 }
 
 }  // namespace karst::mavlink

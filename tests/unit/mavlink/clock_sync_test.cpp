@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core_stack/common/random.h"
 
 namespace karst::mavlink {
@@ -41,6 +43,10 @@ TEST(ClockSync, IgnoresAnswersThatCannotBe) {
   ClockSync sync;
   sync.note_answer(kSecond, 5 * kSecond, kSecond - 1);
   sync.note_answer(kSecond, 5 * kSecond, 3 * kSecond);
+  for (const TimeNs far : {std::numeric_limits<TimeNs>::max(), std::numeric_limits<TimeNs>::min()}) {
+    sync.note_answer(far, 5 * kSecond, 3 * kSecond);
+    sync.note_answer(kSecond, far, kSecond + 1);
+  }
   EXPECT_FALSE(sync.known());
 }
 

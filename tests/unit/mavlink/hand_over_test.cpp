@@ -65,6 +65,7 @@ TEST(HandOver, TheCoreSteersOnlyWhileArmedAndInOffboard) {
 
 TEST(HandOver, KarstAsksOnTheGroundOnceArmedAndNotInTheAir) {
   Session s(Engage::arming);
+  s.hand_over.on_ground(true);
   s.pass(3);
   EXPECT_EQ(s.asked, 0) << "not armed";
   s.base = kCustomMode | kArmed;
@@ -79,6 +80,16 @@ TEST(HandOver, KarstAsksOnTheGroundOnceArmedAndNotInTheAir) {
   s.hand_over.on_ground(true);
   s.pass(5);
   EXPECT_EQ(s.asked, 0) << "what the pilot took, karst does not ask for";
+}
+
+TEST(HandOver, KarstThatStartsBesideAnArmedVehicleAsksForNothing) {
+  for (const bool says_it_stands : {false, true}) {
+    Session s(Engage::arming);
+    s.base = kCustomMode | kArmed;
+    if (says_it_stands) s.hand_over.on_ground(true);
+    s.pass(5);
+    EXPECT_EQ(s.asked, 0);
+  }
 }
 
 TEST(HandOver, AFailsafeIsTheAutopilotsWithItsWords) {

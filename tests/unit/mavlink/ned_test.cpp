@@ -90,6 +90,8 @@ TEST(Setpoints, VisionHasTheVelocityInTheBodyAndItsOwnStamp) {
   EXPECT_EQ(m.time_usec, 1234000u);
   EXPECT_EQ(m.frame_id, kLocalFrd);
   EXPECT_EQ(m.child_frame_id, kBodyFrd);
+  EXPECT_LE(m.estimator_type, kVio) << "PX4's EKF does not read the others";
+  EXPECT_EQ(vision(s, 3).reset_counter, 3);
   EXPECT_NEAR(m.x, 2, 1e-6);
   EXPECT_NEAR(m.z, -3, 1e-6);
   EXPECT_NEAR(m.q[0], 1, 1e-6);

@@ -174,6 +174,25 @@ TEST_F(TelemetryTest, AnImuSampleWaitsForTheClockAndComesInItsFrameAndTime) {
   EXPECT_NEAR(heard.height[1].height_m, 8.4, 0.1);  // near the ground a hPa is 8.4 m
 }
 
+TEST_F(TelemetryTest, WhatNoSensorCanMeasureReachesNobody) {
+  synchronize();
+  for (const float bad : {std::nanf(""), INFINITY, 1e9f}) {
+    HighresImu m;
+    m.time_usec = static_cast<std::uint64_t>((now + kAhead) / 1000);
+    m.fields_updated = 0xffff;
+    m.abs_pressure = bad;
+    m.zacc = bad;
+    take(m);
+    m.zacc = 0, m.xgyro = bad;
+    take(m);
+  }
+  EXPECT_TRUE(heard.imu.empty());
+  EXPECT_TRUE(heard.height.empty());
+  take(AttitudeQuaternion{0, 0, 0, 0, 0, 0, 0, 0, {}});
+  EXPECT_FALSE(telemetry.orientation());
+  EXPECT_FALSE(telemetry.standing()) << "nobody has said so";
+}
+
 TEST_F(TelemetryTest, ArduPilotsUnits) {
   synchronize();
   RawImu m;

@@ -142,6 +142,8 @@ TEST(Loss, IsCountedByTheGapsInEachComponentsNumbers) {
   for (const int s : {10, 12}) note(2, static_cast<std::uint8_t>(s));
   EXPECT_EQ(loss.received(), 7u);
   EXPECT_EQ(loss.lost(), 4u);
+  for (const int s : {5, 4, 6}) note(1, static_cast<std::uint8_t>(s));
+  EXPECT_EQ(loss.lost(), 4u) << "one came twice and one late";
 }
 
 }  // namespace
