@@ -28,6 +28,28 @@ TEST(Flight, IsDisarmedUntilItClimbs) {
   EXPECT_FALSE(f.flight.control(30 * kMillisecond).rates.armed);
 }
 
+// The core's own thrust was taken for flown although the autopilot flew the reference: in a second the mass
+// went from 2 to 2.7 kg.
+TEST(Flight, WhoFliesTheReferenceTeachesNoMass) {
+  for (const bool takes_reference : {false, true}) {
+    VehicleDescription vehicle;
+    vehicle.takes_reference = takes_reference;
+    Flight flight{CoreOptions{}, vehicle};
+    const auto hover = [&](TimeNs now) { flight.on_imu({now, Vec3(0, 0, 7), Vec3::Zero()}, now); };
+    hover(0);
+    flight.climb(0, 1.0, 0.5);
+    for (TimeNs now = 5 * kMillisecond; now < 4 * kSecond; now += 5 * kMillisecond) {
+      hover(now);
+      flight.on_pose({now, {Vec3(0, 0, 0.5), Quat::Identity()}});
+      if (now % (10 * kMillisecond) == 0) flight.control(now);
+    }
+    if (takes_reference)
+      EXPECT_EQ(flight.mass_kg(), vehicle.mass_kg);
+    else
+      EXPECT_GT(std::abs(flight.mass_kg() - vehicle.mass_kg), 0.1);
+  }
+}
+
 TEST(Flight, MotorsThatWereSwitchedOffStayOff) {
   IdealFlight f;
   f.flight.climb(0, 1.0, 0.5);
