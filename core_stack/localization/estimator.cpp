@@ -177,7 +177,8 @@ void Estimator::on_magnetometer(const MagnetometerSample& mag) {
     last_bad_input_ = mag.stamp;
     return;
   }
-  if (guesses() || !lidar_.started() || mag.stamp <= newest_mag_ || mag.stamp < state().stamp - kStale) return;
+  if (guesses() || !lidar_.started() || mag.stamp <= newest_mag_ || mag.stamp < state().stamp - kStale)
+    return;
   newest_mag_ = mag.stamp;
   const Compass::Reading reading = compass_.read(mag, magnetic_.state().orientation);
   if (reading.valid)
@@ -192,7 +193,8 @@ void Estimator::on_barometer(const BarometerSample& barometer) {
     return;
   }
   // The covariance of a guess is so wide that a sample's noise would become speed: 0.5 m of height, 1 m/s.
-  if (guesses() || !lidar_.started() || barometer.stamp <= newest_height_ || barometer.stamp < state().stamp - kStale)
+  if (guesses() || !lidar_.started() || barometer.stamp <= newest_height_ ||
+      barometer.stamp < state().stamp - kStale)
     return;
   newest_height_ = barometer.stamp;
   if (active().height_sigma_m() < kHeightKnown_m) height_offset_.learn(barometer, state().position.z());

@@ -372,8 +372,7 @@ static bool offer(int fd, Out* to, Out* from) {
     memcpy(&size, from->bytes + at, 4);
     memcpy(&type, from->bytes + at + 4, 2);
     const size_t room = sizeof to->bytes - LAST_WORD - to->size;
-    if (8 + size <= room && (!behind || type >= GROUND || type == DONE))
-      put(to, from->bytes + at, 8 + size);
+    if (8 + size <= room && (!behind || type >= GROUND || type == DONE)) put(to, from->bytes + at, 8 + size);
     at += 8 + size;
   }
   from->size = 0;

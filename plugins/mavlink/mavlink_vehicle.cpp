@@ -23,7 +23,7 @@ constexpr double kGravity_mps2 = 9.81;
 constexpr TimeNs kStreamFirst = kSecond + 200 * kMillisecond, kStreamBroken = kSecond / 2;
 constexpr TimeNs kTooLate = 100 * kMillisecond;  // of the loop, for a command
 constexpr double kJump_m = 0.5;                  // between two states 10 ms apart: localization was corrected
-constexpr TimeNs kNever = -3600 * kSecond;  // long before the start
+constexpr TimeNs kNever = -3600 * kSecond;       // long before the start
 /// There and back, up to which the form of control was flown (docs/results/mavlink_flights.md).
 constexpr double kMaxRoundTrip_ms = 210, kMaxRatesRoundTrip_ms = 30;
 
@@ -135,7 +135,8 @@ void MavlinkVehicle::keep_in_touch() {
     connection_.send(Heartbeat{0, kOnboardController, kNoAutopilot, 0, kActive, 3});
   }
   if (due(timesync_at_, kTimesync_hz))
-    connection_.send(Timesync{0, executive_->measured_now(), connection_.peer().system, connection_.peer().component});
+    connection_.send(
+        Timesync{0, executive_->measured_now(), connection_.peer().system, connection_.peer().component});
   if (!hand_over_.connected(now())) return commands_.clear();
   ask_for_telemetry();
   ask_for_setpoint_mode();

@@ -83,7 +83,7 @@ class MavlinkVehicle final : public core::Vehicle {
   core::State state_;  // as commanded last, and whether it is known
   bool state_known_ = false;
   std::uint8_t pose_resets_ = 0;  // jumps of the state
-  bool commanded_ = false;  // ever
+  bool commanded_ = false;        // ever
   std::optional<core::TimeNs> streams_since_, setpoint_at_;
   // When each was sent last.
   core::TimeNs heartbeat_at_, timesync_at_, vision_at_, target_at_, telemetry_at_, take_off_at_, disarm_at_;

@@ -47,21 +47,11 @@ std::map<std::string, double> parameters_of(const AutopilotFirmwareOptions& o, d
          {"MPC_Z_VEL_MAX_DN", 1.5},
          {"MPC_THR_HOVER", hover_thrust}};
   else
-    p = {{"VISO_TYPE", 1},
-         {"EK3_SRC1_POSXY", 6},
-         {"EK3_SRC1_POSZ", 6},
-         {"EK3_SRC1_VELXY", 6},
-         {"EK3_SRC1_VELZ", 6},
-         {"ATC_ANGLE_BOOST", 0},
-         {"EK3_SRC1_YAW", 6},
-         {"GUID_TIMEOUT", 3},
-         {"FS_GCS_ENABLE", 5},
-         {"FS_THR_ENABLE", 3},
-         {"FS_EKF_ACTION", 1},
-         {"BATT_FS_LOW_ACT", 0},
-         {"BATT_FS_CRT_ACT", 1},
-         {"GUID_OPTIONS", 8},
-         {"MOT_THST_HOVER", hover_thrust}};
+    p = {{"VISO_TYPE", 1},       {"EK3_SRC1_POSXY", 6}, {"EK3_SRC1_POSZ", 6},
+         {"EK3_SRC1_VELXY", 6},  {"EK3_SRC1_VELZ", 6},  {"ATC_ANGLE_BOOST", 0},
+         {"EK3_SRC1_YAW", 6},    {"GUID_TIMEOUT", 3},   {"FS_GCS_ENABLE", 5},
+         {"FS_THR_ENABLE", 3},   {"FS_EKF_ACTION", 1},  {"BATT_FS_LOW_ACT", 0},
+         {"BATT_FS_CRT_ACT", 1}, {"GUID_OPTIONS", 8},   {"MOT_THST_HOVER", hover_thrust}};
   std::istringstream given(o.parameters);
   for (std::string one; given >> one;) {
     const auto equals = one.find('=');

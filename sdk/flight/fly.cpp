@@ -28,9 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // The time that a step or job may take before the flight is aborted: longer than any decision or plan takes
-// on any machine.
-constexpr std::chrono::seconds kStallInLockstep{600},
-    kStallInRealTime{30};  // here: in its end (RealTimeOptions)
+// on any machine. In real time a shorter limit holds as well (RealTimeOptions), until the vehicle has landed.
+constexpr std::chrono::seconds kStall{600};
 
 /// Ends the process because the step or job `running` does not return: objects in use by the hanging code
 /// cannot be destroyed. The record is complete up to the last second. Even if nobody reads what it prints,
@@ -173,6 +172,7 @@ RealTime MissionFlight::real_time() const {
   how.on_loop_thread = [&process] { process.prepare_thread(ThreadRole::loop); };
   how.on_watch_thread = [&process] { process.prepare_thread(ThreadRole::watchdog); };
   how.hang_limit = std::chrono::milliseconds(static_cast<long>(1e3 * mission_.real_time.hang_limit_s));
+  how.on_landed = [this] { in_the_air_ = false; };
   how.on_hang = [this](const std::string& running) { end_stalled(running, request_.run_dir); };
   return how;
 }
@@ -213,8 +213,7 @@ core::TimeNs MissionFlight::run(const std::atomic<bool>& interrupted) {
   std::vector<const core::Executive*> executives;
   for (std::size_t i = 0; i < members_.size(); ++i) executives.push_back(&running_->lockstep->executive(i));
   const core::StallWatch stall(
-      executives, request_.clock == core::Clock::real_time ? kStallInRealTime : kStallInLockstep,
-      [this](const std::string& running) { end_stalled(running, request_.run_dir); });
+      executives, kStall, [this](const std::string& running) { end_stalled(running, request_.run_dir); });
   in_the_air_ = true;
   const core::TimeNs end = running_->lockstep->run([&](core::TimeNs now, const auto& all) {
     if (line) line->show(now, all);

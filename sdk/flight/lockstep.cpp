@@ -73,6 +73,7 @@ void Lockstep::run_in_real_time(const FlightWatch& watch) {
       return watch(status.time, {status});
     });
   }
+  if (how.on_landed) how.on_landed();
   now_ = vehicle.executive.now();
   vehicle.end(now_);
 }

@@ -62,6 +62,7 @@ struct RealTime {
   std::function<void()> on_loop_thread, on_watch_thread;  // called once on these, before the flight
   std::chrono::milliseconds hang_limit{2000};
   core::StallWatch::Report on_hang;  // if the loop hangs for so long; empty: nobody watches
+  std::function<void()> on_landed;   // the mission is over; what follows may take its time
 };
 
 struct LockstepOptions {

@@ -21,7 +21,9 @@
 namespace karst::flight {
 namespace {
 
-constexpr std::array kPriorities = {45, 40, 30, 25, 20, 10};  // by role
+/// By role; 0: a usual thread. Sensing, map and pictures have none, so that a policy in a process of its own
+/// gets its share beside them.
+constexpr std::array kPriorities = {45, 40, 30, 0, 0, 0};
 constexpr std::size_t kStackBytes = 512 * 1024;  // of the loop's thread, touched before the flight
 
 /// 0, or the reason why not.
@@ -32,7 +34,8 @@ int set_fifo(int priority) {
 
 void set_usual() {
   const sched_param param{};
-  sched_setscheduler(0, SCHED_OTHER, &param);
+  // The flag of set_fifo stays: only a process that may do anything may take it away.
+  sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &param);
 }
 
 bool may_lock_any_memory() {
@@ -129,7 +132,7 @@ RealTimeProcess::~RealTimeProcess() {
 Grant RealTimeProcess::try_priorities() {
   if (!options_.priorities) return {"priorities", false, "not asked for (real_time.priorities)"};
   for (const int priority : kPriorities) {
-    const int error = set_fifo(priority);
+    const int error = priority > 0 ? set_fifo(priority) : 0;
     if (error == 0) continue;
     set_usual();
     return {"priorities", false,
@@ -141,8 +144,9 @@ Grant RealTimeProcess::try_priorities() {
   has_priorities_ = true;
   std::string text = "SCHED_FIFO:";
   for (const auto& [role, name] : names_of(ThreadRole{}))
-    text += std::string(role == ThreadRole::watchdog ? " " : ", ") + name + " " +
-            std::to_string(priority_of(role));
+    if (priority_of(role) > 0)
+      text += std::string(role == ThreadRole::watchdog ? " " : ", ") + name + " " +
+              std::to_string(priority_of(role));
   return {"priorities", true, text};
 }
 
@@ -190,7 +194,7 @@ Grant RealTimeProcess::choose_cpus(const std::string& mission_file) {
 }
 
 void RealTimeProcess::prepare_thread(ThreadRole role) const {
-  if (has_priorities_) set_fifo(priority_of(role));
+  if (has_priorities_ && priority_of(role) > 0) set_fifo(priority_of(role));
   const bool is_job = role != ThreadRole::loop && role != ThreadRole::watchdog;
   const cpu_set_t& cpus = is_job ? job_cpus_ : role == ThreadRole::loop ? loop_cpus_ : all_cpus_;
   if (!CPU_EQUAL(&cpus, &all_cpus_)) sched_setaffinity(0, sizeof cpus, &cpus);

@@ -21,8 +21,9 @@ TEST(MavlinkPlugin, NamesWhatIsWrongBeforeItFlies) {
   std::ofstream(folder + "/os.json") << lidar::json_text_of(
       test::uneven_ouster(lidar::OusterProfile::single));
   const std::string fly = "fly --quiet --no-report --out " + folder + "/run --set vehicle=mavlink ",
-                    ouster = "--real-time --set mavlink.lidar.unit=ouster --set mavlink.lidar.metadata=" +
-                             folder + "/os.json --set mavlink.lidar.port=";
+                    ouster =
+                        "--real-time --set mavlink.lidar.unit=ouster --set mavlink.lidar.metadata=" + folder +
+                        "/os.json --set mavlink.lidar.port=";
   const auto refused = [](const std::string& arguments, const std::string& words) {
     const Output out = run_karst(arguments);
     EXPECT_NE(out.code, 0) << arguments;
@@ -121,8 +122,7 @@ TEST(MavlinkPlugin, InRealTimeItHearsTheAutopilotAndDeliversTheScansOfAnOuster) 
   lidar::UdpSender ouster("127.0.0.1", lidar_port);
   const auto model = std::make_shared<core::LidarModel>(*vehicle->description().lidar);
   vehicle->start(executive, heard);
-  executive.every("autopilot", 5 * kMillisecond, 5 * kMillisecond,
-                  [&] { autopilot.step(executive.now()); });
+  executive.every("autopilot", 5 * kMillisecond, 5 * kMillisecond, [&] { autopilot.step(executive.now()); });
   std::uint16_t sweep = 0;
   core::LidarScan sent;
   executive.every("ouster", 100 * kMillisecond, 100 * kMillisecond, [&] {

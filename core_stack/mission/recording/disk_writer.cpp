@@ -89,11 +89,15 @@ void DiskWriter::run() {
       batch.swap(pending_);
       pending_bytes_ = 0;
     }
-    if (!write(batch)) {
-      const std::lock_guard lock(mutex_);
-      failed_ = true;
+    bool written = false;
+    try {
+      written = write(batch);
+      sync_others();
+    } catch (...) {  // no memory, or the folder is gone: the vehicle still has to land
     }
-    sync_others();
+    if (written) continue;
+    const std::lock_guard lock(mutex_);
+    failed_ = true;
   }
 }
 

@@ -34,14 +34,16 @@ TEST(Cpus, WhatIsNoListIsRefusedWithItsPlace) {
   }
 }
 
-TEST(ThreadRoles, TheOrderIsWatchdogLoopLocalizationSensingMapPictures) {
+TEST(ThreadRoles, TheOrderIsWatchdogLoopLocalizationAndTheOthersAreUsualThreads) {
   using enum ThreadRole;
   int last = 50;  // the kernel's interrupt threads
-  for (const ThreadRole role : {watchdog, loop, localization, sensing, map, pictures}) {
+  for (const ThreadRole role : {watchdog, loop, localization}) {
     EXPECT_LT(priority_of(role), last) << core::name_of(role);
     last = priority_of(role);
   }
   EXPECT_GE(last, 1) << "above every usual thread";
+  for (const ThreadRole role : {sensing, map, pictures})
+    EXPECT_EQ(priority_of(role), 0) << core::name_of(role);
   std::set<ThreadRole> of_lanes;
   for (const auto& [lane, name] : core::names_of(core::Lane{})) {
     of_lanes.insert(role_of(lane));
@@ -59,17 +61,17 @@ TEST(RealTimeProcess, AThreadHasThePriorityThatThePageSays) {
   for (const Grant& g : process.grants())
     if (g.what == "priorities") granted = g.granted;
   std::thread([&] {
-    process.prepare_thread(ThreadRole::map);
+    process.prepare_thread(ThreadRole::localization);
     sched_param param{};
     const int policy = sched_getscheduler(0) & ~SCHED_RESET_ON_FORK;
     sched_getparam(0, &param);
     EXPECT_EQ(policy, granted ? SCHED_FIFO : SCHED_OTHER);
-    EXPECT_EQ(param.sched_priority, granted ? priority_of(ThreadRole::map) : 0);
+    EXPECT_EQ(param.sched_priority, granted ? priority_of(ThreadRole::localization) : 0);
     std::thread([] { EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER) << "what it starts has none"; }).join();
     process.release_thread();
     EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER);
   }).join();
-  EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER) << "trying leaves nothing behind";
+  EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER) << "trying leaves nothing behind";
 }
 
 TEST(RealTimeProcess, WhatIsNotAskedForIsNotTakenAndSaid) {
@@ -77,7 +79,7 @@ TEST(RealTimeProcess, WhatIsNotAskedForIsNotTakenAndSaid) {
   options.priorities = options.lock_memory = false;
   const RealTimeProcess process(options, "m");
   process.prepare_thread(ThreadRole::loop);
-  EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER);
+  EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER);
   EXPECT_NE(process.page().find("not asked for (real_time.priorities)"), std::string::npos);
   EXPECT_NE(process.page().find("not asked for (real_time.lock_memory)"), std::string::npos);
 }
