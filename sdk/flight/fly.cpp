@@ -165,7 +165,7 @@ std::vector<Seat> MissionFlight::seats() const {
   return seats;
 }
 
-RealTime MissionFlight::real_time() const {
+RealTime MissionFlight::real_time() {
   const RealTimeProcess& process = *running_->real_time;
   RealTime how;
   how.setup.on_lane_thread = [&process](core::Lane lane) { process.prepare_thread(role_of(lane)); };

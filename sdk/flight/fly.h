@@ -57,7 +57,7 @@ class MissionFlight {
   void prepare(const std::atomic<bool>& interrupted);
   void assemble();
   std::vector<Seat> seats() const;
-  RealTime real_time() const;
+  RealTime real_time();
   core::TimeNs run(const std::atomic<bool>& interrupted);
   nlohmann::ordered_json finish_alone(FlightOutcome& outcome, double wall_s) const;
   nlohmann::ordered_json finish_members(FlightOutcome& outcome, double wall_s) const;
