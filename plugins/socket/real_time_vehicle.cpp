@@ -13,6 +13,7 @@ namespace {
 constexpr TimeNs kStep = 2 * kMillisecond;
 constexpr TimeNs kPingPeriod = 100 * kMillisecond, kFirstPings = 10 * kMillisecond;
 constexpr TimeNs kCaughtUp = 100 * kMillisecond;
+constexpr TimeNs kKnownFor = 500 * kMillisecond;  // the core's state, before it steers again
 constexpr std::size_t kMessagesAStep = 64;  // so that no vehicle can hold up the control
 
 bool measured(const ToCore& m) {
@@ -132,7 +133,8 @@ void RealTimeVehicle::judge_silence() {
   if (lost_) return;
   if (link_->heard()) {
     heard_at_ = executive_->measured_now();
-    if (away_ && late() < kCaughtUp && offset_.known()) {
+    const bool knows = known_since_ && executive_->now() - *known_since_ >= kKnownFor;
+    if (away_ && knows && late() < kCaughtUp && offset_.known()) {
       away_ = false;
       sink_->on_authority(executive_->now(), steers_, "the vehicle and the core hear each other again");
     }
@@ -155,9 +157,14 @@ void RealTimeVehicle::give_away(const std::string& reason) {
 TimeNs RealTimeVehicle::late() const { return executive_->measured_now() - executive_->now(); }
 
 /// What cannot be sent at once is not sent at all, as the next command is newer; nor what was due long ago,
-/// nor before both hear each other: a vehicle that came down by itself must not be lifted off by commands for
-/// where it was.
+/// nor while the vehicle steers itself after a silence: it stays level by itself, and must not be lifted off by
+/// commands for where it was.
 void RealTimeVehicle::command(const core::Command& c) {
+  if (!c.state_is_known || executive_->lost_time() != lost_time_)
+    known_since_.reset();
+  else if (!known_since_)
+    known_since_ = executive_->now();
+  if (away_) return;
   if (lost_ || executive_->lost_time() != lost_time_) return;
   if (link_->stream().backlog_bytes() > 0 || late() > kCaughtUp || !offset_.known()) return;
   core::Command sent = c;

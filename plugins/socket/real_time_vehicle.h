@@ -56,6 +56,7 @@ class RealTimeVehicle final : public core::Vehicle {
   core::TimeNs next_ping_ = 0, heard_at_ = 0;       // by Executive::measured_now()
   core::TimeNs lost_time_ = 0;                      // of the executive, that is reckoned with
   core::Authority steers_ = core::Authority::core;  // as the vehicle says
+  std::optional<core::TimeNs> known_since_;         // the core's state, as it says with its commands
   bool away_ = false, lost_ = false;                // steered by its autopilot because of silence
 };
 
