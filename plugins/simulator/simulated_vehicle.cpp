@@ -167,15 +167,23 @@ void SimulatedVehicle::command(const core::Command& c) {
   quadrotor_.command = c.rates;
   commanded_at_ = executive_ ? now() : 0;
   taken_over_ = false;
+  velocity_error_mps_.reset();
+  if (c.state_is_known) velocity_error_mps_ = c.state.velocity_mps - quadrotor_.state().velocity_mps;
 }
 
-/// The autopilot takes over; a vehicle that stands switches its motors off.
+/// The autopilot takes over; a vehicle that stands switches its motors off. For five seconds it knows its
+/// velocity by dead reckoning from the last estimate that it was told, as PX4 does (EKF2_NOAID_TOUT): with
+/// the estimate's error, and none of its own.
 void SimulatedVehicle::take_over() {
   if (!std::exchange(taken_over_, true))
     log_.event(now(), "autopilot", quadrotor_.state(), "no command: level, and down");
+  constexpr TimeNs kDeadReckoning = 5 * core::kSecond;
+  std::optional<Vec3> velocity;
+  if (velocity_error_mps_ && now() - commanded_at_ < kDeadReckoning)
+    velocity = quadrotor_.state().velocity_mps + *velocity_error_mps_;
   quadrotor_.command = quadrotor_.footing() == Footing::standing
                            ? core::AttitudeRateCommand{}
-                           : level_descent(quadrotor_.state(), options_.body.total_weight_n());
+                           : level_descent(quadrotor_.state(), options_.body.total_weight_n(), velocity);
 }
 
 void SimulatedVehicle::tick() {

@@ -98,8 +98,9 @@ class SimulatedVehicle final : public core::Vehicle {
   std::vector<Reading> schedule_;
   bool lost_ = false;
   core::TimeNs commanded_at_ = 0;
-  bool taken_over_ = false;  // by its autopilot, as no more commands came
-  PoseTrack track_;          // of the last sweep
+  std::optional<core::Vec3> velocity_error_mps_;  // of the estimate in the last command; none: it had none
+  bool taken_over_ = false;                       // by its autopilot, as no more commands came
+  PoseTrack track_;                               // of the last sweep
   core::Vec3 last_velocity_mps_ = core::Vec3::Zero();
   core::Quat last_orientation_ = core::Quat::Identity();
 };

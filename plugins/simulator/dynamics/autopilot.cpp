@@ -25,12 +25,20 @@ Wrench rate_control(const AutopilotOptions& o, const BodyModel& body,
   return {std::max(command.thrust_n, 0.0), J.cwiseProduct(acceleration) + w.cross(J.cwiseProduct(w))};
 }
 
-core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n) {
+core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n,
+                                        const std::optional<Vec3>& velocity_mps) {
   constexpr double kSink_mps = 0.5, kLevelling_1ps = 6, kClimbRateGain_1ps = 3;
-  const Vec3 up_body = s.T_world_body.orientation.conjugate() * Vec3::UnitZ();
+  constexpr double kBraking_1ps = 1.5, kMaxBraking_mps2 = 2;
+  const core::Quat to_body = s.T_world_body.orientation.conjugate();
+  const Vec3 up_body = to_body * Vec3::UnitZ();
+  Vec3 thrust_world = kGravity_mps2 * Vec3::UnitZ();
+  if (velocity_mps) {
+    const Vec3 braking = -kBraking_1ps * Vec3(velocity_mps->x(), velocity_mps->y(), 0);
+    thrust_world += braking * std::min(1.0, kMaxBraking_mps2 / std::max(braking.norm(), 1e-9));
+  }
   const double force = 1 + kClimbRateGain_1ps * (-kSink_mps - s.velocity_mps.z()) / kGravity_mps2;
   core::AttitudeRateCommand out;
-  out.body_rate_radps = kLevelling_1ps * Vec3::UnitZ().cross(up_body);  // turns the body's z axis upwards
+  out.body_rate_radps = kLevelling_1ps * Vec3::UnitZ().cross(to_body * thrust_world.normalized());
   out.thrust_n = weight_n * std::clamp(force, 0.3, 1.5) / std::clamp(up_body.z(), 0.5, 1.0);
   out.armed = true;
   return out;

@@ -1,5 +1,7 @@
 // The autopilot's attitude-rate controller, between the core stack's command and the motors.
 #pragma once
+#include <optional>
+
 #include "core_stack/vehicle/command.h"
 #include "plugins/simulator/dynamics/motors.h"
 
@@ -18,9 +20,10 @@ void describe(core::OptionTable& t, AutopilotOptions& o);
 Wrench rate_control(const AutopilotOptions& o, const BodyModel& body,
                     const core::AttitudeRateCommand& command, const core::Vec3& measured_rate_radps);
 
-/// The autopilot's command when no more commands come: it levels the vehicle and descends at 0.5 m/s. It has
-/// no position, so the vehicle drifts. It uses its own attitude and climb rate, and the hover thrust
-/// `weight_n` that it has learned.
-core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n);
+/// The autopilot's command when no more commands come: it levels the vehicle and descends at 0.5 m/s. With a
+/// horizontal velocity (world frame) it brakes by up to 2 m/s^2; without one, or a position, the vehicle
+/// drifts. It uses its own attitude and climb rate, and the hover thrust `weight_n` that it has learned.
+core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n,
+                                        const std::optional<core::Vec3>& velocity_mps = {});
 
 }  // namespace karst::sim

@@ -11,6 +11,34 @@ using sim::BodyState;
 using sim::MotorModel;
 using sim::MotorThrusts;
 
+/// A vehicle at 1.8 m/s whose autopilot brings it down for `duration_s`, in air without drag.
+BodyState descended(double duration_s, bool knows_velocity) {
+  BodyModel body;
+  body.spin_drag_nms = 0;
+  const MotorModel motors;
+  BodyState s;
+  s.velocity_mps = {1.8, 0, 0};
+  MotorThrusts f = MotorThrusts::Constant(body.weight_n() / 4);
+  for (double t = 0; t < duration_s; t += 0.001) {
+    const auto command =
+        sim::level_descent(s, body.weight_n(), knows_velocity ? std::optional(s.velocity_mps) : std::nullopt);
+    const sim::Wrench w = sim::rate_control({}, body, command, s.body_rate_radps);
+    f = sim::follow(motors, f, sim::mix(motors, sim::max_motor_thrust_n(motors, body), w), 0.001);
+    s = sim::advance(body, s, sim::wrench_of(motors, f), Vec3::Zero(), 0.001);
+  }
+  return s;
+}
+
+// It flew on at that speed until it touched rock, whenever the core stood still for long.
+TEST(Autopilot, ThatKnowsItsVelocityBrakesWhenNoMoreCommandsCome) {
+  const BodyState braked = descended(4, true);
+  EXPECT_LT(braked.velocity_mps.head<2>().norm(), 0.1);
+  EXPECT_LT(braked.T_world_body.position.head<2>().norm(), 2.5);
+  EXPECT_NEAR(braked.velocity_mps.z(), -0.5, 0.05);
+  EXPECT_GT((braked.T_world_body.orientation * Vec3::UnitZ()).z(), 0.99);
+  EXPECT_GT(descended(4, false).T_world_body.position.x(), 5) << "it drifts, as it knows no velocity";
+}
+
 /// Autopilot, motors and body in free space.
 std::vector<Vec3> rates_after_step(const Vec3& commanded, int steps) {
   const AutopilotOptions o;
