@@ -103,7 +103,9 @@ TEST(RegionFlight, ItFliesNoFartherFromHomeThanAllowed) {
   const Flown f =
       fly("distance", cave, "--set region.max_home_distance=15 --set mission.max_flight_time=100s");
   expect_kept(f);
-  EXPECT_GT(farthest_x(f), 10);
+  // From there it has seen all that it may fly to: how near to the limit that is, its goals decide.
+  EXPECT_GT(farthest_x(f), 7.5);
+  EXPECT_GT(f.metrics["coverage"].get<double>(), 0.97);
   EXPECT_LT(farthest_x(f), 15.5);  // the passage is straight so far, and the way home as long as x
   EXPECT_TRUE(f.says("explored"));
 }
