@@ -94,7 +94,10 @@ void Estimator::on_imu(const ImuSample& imu) {
 void Estimator::bridge(const ImuSample& expected, Expected how) {
   if (!lidar_.started() || !is_finite(expected) || expected.stamp <= state().stamp) return;
   const double noise = how == Expected::as_commanded ? kBridgeNoise : kAnotherSteersNoise;
-  if (how == Expected::another_steers) guessed_until_ = expected.stamp;
+  if (how == Expected::another_steers) {
+    guessed_until_ = expected.stamp;
+    poses_since_guess_ = 0;
+  }
   stand_in(lidar_, expected, noise);
   stand_in(magnetic_, expected, noise);
   if (newcomer_) stand_in(*newcomer_, expected, noise);
@@ -129,6 +132,7 @@ bool Estimator::take_in(const PoseMeasurement& pose) {
   newest_pose_ = pose.stamp;
   if (verdict == Verdict::accepted) {
     last_pose_ = pose.stamp;
+    if (guesses() && pose.stamp > guessed_until_) ++poses_since_guess_;
     refused_ = 0;
     newcomer_.reset();
   } else {

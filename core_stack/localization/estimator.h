@@ -47,8 +47,8 @@ class Estimator {
   /// a hover if another steers, who may do anything.
   enum class Expected { as_commanded, another_steers };
   void bridge(const ImuSample& expected, Expected how = Expected::as_commanded);
-  /// Another steered while the IMU was silent, and no pose since then has told what became of it.
-  bool guesses() const { return last_pose_ <= guessed_until_; }
+  /// Another steered while the IMU was silent, and no two poses since then have told where it is and how fast.
+  bool guesses() const { return poses_since_guess_ < 2; }
   /// Ignores poses that are not finite, not newer than the last one, or older than a second.
   void on_pose(const PoseSample& pose);
   /// The same for a LiDAR pose with its covariance. Returns true if the pose was accepted.
@@ -84,6 +84,7 @@ class Estimator {
   TimeNs newest_pose_ = std::numeric_limits<TimeNs>::min();  // accepted or not
   TimeNs newest_mag_ = std::numeric_limits<TimeNs>::min(), newest_height_ = newest_mag_;
   TimeNs guessed_until_ = std::numeric_limits<TimeNs>::min();  // the newest sample bridged for another
+  int poses_since_guess_ = 2;                                  // accepted; or more
   TimeNs last_bad_input_ = std::numeric_limits<TimeNs>::min();
 };
 
