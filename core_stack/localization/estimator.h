@@ -47,7 +47,8 @@ class Estimator {
   /// a hover if another steers, who may do anything.
   enum class Expected { as_commanded, another_steers };
   void bridge(const ImuSample& expected, Expected how = Expected::as_commanded);
-  /// Another steered while the IMU was silent, and no two poses since then have told where it is and how fast.
+  /// Another steered while the IMU was silent, and no two poses since then have told where it is and how
+  /// fast.
   bool guesses() const { return poses_since_guess_ < 2; }
   /// Ignores poses that are not finite, not newer than the last one, or older than a second.
   void on_pose(const PoseSample& pose);
