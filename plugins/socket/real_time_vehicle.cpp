@@ -14,7 +14,7 @@ constexpr TimeNs kStep = 2 * kMillisecond;
 constexpr TimeNs kPingPeriod = 100 * kMillisecond, kFirstPings = 10 * kMillisecond;
 constexpr TimeNs kCaughtUp = 100 * kMillisecond;
 constexpr TimeNs kKnownFor = 500 * kMillisecond;  // the core's state, before it steers again
-constexpr std::size_t kMessagesAStep = 64;  // so that no vehicle can hold up the control
+constexpr std::size_t kMessagesAStep = 64;        // so that no vehicle can hold up the control
 
 bool measured(const ToCore& m) {
   return !std::holds_alternative<Ground>(m) && !std::holds_alternative<LiftOff>(m) &&
@@ -157,8 +157,8 @@ void RealTimeVehicle::give_away(const std::string& reason) {
 TimeNs RealTimeVehicle::late() const { return executive_->measured_now() - executive_->now(); }
 
 /// What cannot be sent at once is not sent at all, as the next command is newer; nor what was due long ago,
-/// nor while the vehicle steers itself after a silence: it stays level by itself, and must not be lifted off by
-/// commands for where it was.
+/// nor while the vehicle steers itself after a silence: it stays level by itself, and must not be lifted off
+/// by commands for where it was.
 void RealTimeVehicle::command(const core::Command& c) {
   if (!c.state_is_known || executive_->lost_time() != lost_time_)
     known_since_.reset();
