@@ -130,7 +130,10 @@ TEST(MavlinkPlugin, InRealTimeItHearsTheAutopilotAndDeliversTheScansOfAnOuster) 
     for (const lidar::Packet& p : lidar::ouster_packets(sent, metadata, ++sweep)) ouster.send(p);
   });
   // As long as it takes on a busy machine.
-  executive.run_until(60 * kSecond, [&] { return heard.scans.size() >= 3 && heard.imu.size() >= 20; });
+  executive.run_until(60 * kSecond, [&] {
+    return heard.scans.size() >= 3 && heard.imu.size() >= 20 && !heard.authority.empty() &&
+           heard.authority.back() == "pilot: not armed";
+  });
   vehicle->finish();
 
   ASSERT_GE(heard.scans.size(), 3u);

@@ -303,7 +303,7 @@ TEST(PreflightCommand, OfAVehicleHasTheErrorsOfAMission) {
   EXPECT_TRUE(contains(error_of({"--vehicle", "simulator", "nowhere.info"}), "nowhere.info"));
   EXPECT_TRUE(contains(error_of({"--vehicle", "simulator", mission_file(), "--set", "team.robots=2"}),
                        "for one vehicle, not for a team"));
-  EXPECT_TRUE(contains(error_of({}), "needs a CAVE, or --vehicle"));
+  EXPECT_TRUE(contains(error_of({}), "argument cave is missing, or --vehicle"));
 }
 
 TEST(PreflightCommand, BadInputIsAnError) {
