@@ -24,7 +24,7 @@ ClearanceLimits clearance_limits(const PlanningOptions& options, const VehicleDe
 }
 
 int touching_segment(const VoxelMap& map, const ClearanceLimits& limits, const std::vector<Vec3>& points) {
-  return first_blocked_segment(map, points, limits.hull_radius_m);
+  return first_blocked_segment(map, points, limits.hull_radius_m, Confined::no);
 }
 
 int blocked_segment(const VoxelMap& map, const ClearanceLimits& limits, const std::vector<Vec3>& points,

@@ -20,7 +20,8 @@ struct ClearanceLimits {
 };
 ClearanceLimits clearance_limits(const PlanningOptions& options, const VehicleDescription& vehicle);
 
-/// Index of the first segment of `points` within the vehicle's radius of an obstacle cell, or -1.
+/// Index of the first segment of `points` within the vehicle's radius of an obstacle cell, or -1. A
+/// region's border is no obstacle: the flown path back from outside must lead over it.
 int touching_segment(const VoxelMap& map, const ClearanceLimits& limits, const std::vector<Vec3>& points);
 
 /// Index of the first segment of `points` that lacks clearance in the current map, or -1. Near the path's

@@ -108,14 +108,14 @@ Path plan_on_grid_squeezing(const VoxelMap& map, const Vec3& start, const Vec3& 
                      search_m);
 }
 
-bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m) {
+bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m, Confined confined) {
   if (!within_world(a) || !within_world(b)) return false;
   const double res = map.resolution_m();
   const Vec3 half = Vec3::Constant(0.5);
   // Near the region's border each cell is asked: the depth changes by no more than the distance.
   const double reach_m = (b - a).norm() / 2 + clearance_m + res;
-  const bool at_border =
-      map.region() && !(map.region()->depth_m((a + b) / 2) >= map.region()->limits().margin_m + reach_m);
+  const bool at_border = confined == Confined::yes && map.region() &&
+                         !(map.region()->depth_m((a + b) / 2) >= map.region()->limits().margin_m + reach_m);
   const auto free = [&](const CellKey& k) { return at_border ? map.may_fly(k) : map.at(k) == Cell::free; };
   const bool near_free =
       all_rows_near_segment(a / res - half, b / res - half, clearance_m / res,
@@ -135,9 +135,10 @@ bool is_clear(const VoxelMap& map, const Vec3& p, double clearance_m) {
   return segment_clear(map, p, p, clearance_m);
 }
 
-int first_blocked_segment(const VoxelMap& map, const std::vector<Vec3>& points, double clearance_m) {
+int first_blocked_segment(const VoxelMap& map, const std::vector<Vec3>& points, double clearance_m,
+                          Confined confined) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i)
-    if (!segment_clear(map, points[i], points[i + 1], clearance_m)) return static_cast<int>(i);
+    if (!segment_clear(map, points[i], points[i + 1], clearance_m, confined)) return static_cast<int>(i);
   return -1;
 }
 

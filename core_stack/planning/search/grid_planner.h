@@ -2,6 +2,7 @@
 // clearance to the cell's centre.
 #pragma once
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/planning/free_space/free_tiles.h"
 #include "core_stack/planning/path/path.h"
 
 namespace karst::core {
@@ -21,8 +22,10 @@ Path plan_on_grid_squeezing(const VoxelMap& map, const Vec3& start, const Vec3& 
 /// False if p is not finite.
 bool is_clear(const VoxelMap& map, const Vec3& p, double clearance_m);
 /// Whether every point of the segment is clear.
-bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m);
+bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double clearance_m,
+                   Confined confined = Confined::yes);
 /// Index of the first segment of `points` that is not clear, or -1.
-int first_blocked_segment(const VoxelMap& map, const std::vector<Vec3>& points, double clearance_m);
+int first_blocked_segment(const VoxelMap& map, const std::vector<Vec3>& points, double clearance_m,
+                          Confined confined = Confined::yes);
 
 }  // namespace karst::core

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core_stack/common/random.h"
+#include "core_stack/mapping/region/flight_region.h"
 #include "tests/unit/mission/mapped_world.h"
 
 namespace karst::core {
@@ -67,6 +68,21 @@ TEST(TouchingSegment, IsTheFirstNearerThanTheHullsRadius) {
   const VoxelMap map = room_open_to_x();
   EXPECT_EQ(touching_segment(map, kLimits, along_the_wall(0.5)), -1);
   EXPECT_EQ(touching_segment(map, kLimits, along_the_wall(0.35)), 1);
+}
+
+/// Outside, with unknown cells between it and the inside: only the flown path leads back.
+TEST(TouchingSegment, TheFlownPathBackFromOutsideTheRegionIsNotBlockedByItsBorder) {
+  VoxelMap map = room_open_to_x();
+  for (int y = 0; y < 12; ++y)  // unknown, between y = 0 and 2.4
+    for (int z = 0; z < 20; ++z) map.assign({20, y, z}, 0, 0.0f);
+  FlightRegion::Limits limits;
+  limits.keep_in = box({-1, -1, -1}, {4, 7, 5});
+  limits.margin_m = 0.3;
+  map.confine(std::make_shared<const FlightRegion>(limits));
+  const std::vector<Vec3> flown_back{Vec3(6, 4.5, 2), Vec3(4, 4.5, 2), Vec3(2, 3, 2)};
+  EXPECT_EQ(blocked_segment(map, kLimits, flown_back, {}), 0) << "no usual path leads out there";
+  EXPECT_EQ(touching_segment(map, kLimits, flown_back), -1);
+  EXPECT_EQ(touching_segment(map, kLimits, {Vec3(6, 0.35, 2), Vec3(6, 0.1, 2)}), 0) << "rock outside is rock";
 }
 
 TEST(HoverBelow, ALowRoofIsWhereThereIsRoomAboveAndBelow) {
