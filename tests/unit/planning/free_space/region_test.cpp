@@ -169,6 +169,18 @@ TEST(Region, WhatIsTooFarOutsideHasNoPathBack) {
   EXPECT_FALSE(escape_path(map, free, {28, 2, 1.5}, 0.45));
 }
 
+/// Without a direction the search would visit most of the 150 000 cells within the distance.
+TEST(Region, TheSearchForTheWayBackIsDirectedAndBounded) {
+  VoxelMap map = hall({90, 60, 40});
+  map.confine(half_of_the_hall());
+  const Vec3 from(16, 6, 4);
+  FreeTiles free(map.resolution_m()), again(map.resolution_m());
+  const auto path = path_back_inside(map, free, from, 0.45, 2000);
+  ASSERT_TRUE(path);
+  EXPECT_LT(path_length_m(*path), -map.region()->depth_m(from) + 1.6) << "straight";
+  EXPECT_FALSE(path_back_inside(map, again, from, 0.45, 20));
+}
+
 TEST(Region, RockAndUnknownCellsKeepTheirClass) {
   VoxelMap map = hall({50, 20, 15});
   const std::size_t free = map.free_cells(), occupied = map.occupied_cells();
