@@ -80,29 +80,40 @@ bool DiskWriter::finish() {
 }
 
 void DiskWriter::run() {
-  for (bool last = false; !last;) {
-    std::vector<Pending> batch;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, kPeriod, [this] { return over_; });
-      last = over_;
-      batch.swap(pending_);
-      pending_bytes_ = 0;
-    }
-    bool written = false;
-    try {
-      written = write(batch);
-      sync_others();
-    } catch (...) {  // no memory, or the folder is gone: the vehicle still has to land
-    }
-    if (written) continue;
-    const std::lock_guard lock(mutex_);
-    failed_ = true;
+  guarded([this] { sync_folder((fs::absolute(folder_) / "").parent_path().parent_path()); });
+  for (bool last = false; !last;)
+    guarded([&] {
+      std::vector<Pending> batch;
+      {
+        std::unique_lock lock(mutex_);
+        wake_.wait_for(lock, kPeriod, [this] { return over_; });
+        last = over_;
+        batch.swap(pending_);
+        pending_bytes_ = 0;
+      }
+      std::set<FileId> synced;
+      if (!write(batch, synced)) fail();
+      sync_others(synced);
+    });
+}
+
+/// Out of memory, or whatever else fails here, costs the record, never the flight.
+template <class Step>
+void DiskWriter::guarded(const Step& step) {
+  try {
+    step();
+  } catch (...) {
+    fail();
   }
 }
 
+void DiskWriter::fail() {
+  const std::lock_guard lock(mutex_);
+  failed_ = true;
+}
+
 /// A file that cannot be written does not prevent the others from being written.
-bool DiskWriter::write(const std::vector<Pending>& batch) {
+bool DiskWriter::write(const std::vector<Pending>& batch, std::set<FileId>& synced) {
   std::vector<int> descriptors;
   {
     const std::lock_guard lock(mutex_);
@@ -114,13 +125,17 @@ bool DiskWriter::write(const std::vector<Pending>& batch) {
     good = write_all(descriptors[p.file], p.bytes) && good;
     written.insert(descriptors[p.file]);
   }
-  for (const int d : written)
-    good = (fdatasync(d) == 0 || errno == EINVAL) && good;  // EINVAL: no disk below it
+  for (const int d : written) {
+    const bool is_synced = fdatasync(d) == 0;
+    good = (is_synced || errno == EINVAL) && good;  // EINVAL: no disk below it
+    struct stat is {};
+    if (is_synced && fstat(d, &is) == 0) synced.insert({is.st_dev, is.st_ino});
+  }
   return good;
 }
 
 /// What is not this writer's is synced as far as possible: the flight does not depend on it.
-void DiskWriter::sync_others() {
+void DiskWriter::sync_others(const std::set<FileId>& synced) {
   std::error_code error;
   std::set<fs::path> grown;  // folders with new files
   for (fs::recursive_directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
@@ -132,7 +147,7 @@ void DiskWriter::sync_others() {
     if (is_new) grown.insert(at->path().parent_path());
     if (!is_new && found->second.size == now.size && found->second.changed_ns == now.changed_ns) continue;
     found->second = now;
-    sync(at->path());
+    if (!synced.contains({is.st_dev, is.st_ino})) sync(at->path());
   }
   for (const fs::path& folder : grown) sync_folder(folder);
   if (!grown.empty()) sync_folder(folder_);

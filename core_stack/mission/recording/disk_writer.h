@@ -2,17 +2,21 @@
 //
 // The loop of a flight in real time must wait neither for the file system nor for the disk, and what it
 // recorded must survive a power cut. So it only hands bytes on. The writer's thread writes them and calls
-// fdatasync. Once a second it does so, too, for all other files of the directory that have grown, such as
-// those of the vehicle, and calls fsync for the directory if a file is new. The thread has no priority: a
+// fdatasync, every half second. It does so, too, for all other files of the directory that have grown, such
+// as those of the vehicle, and calls fsync for the directory if a file is new. The thread has no priority: a
 // real-time thread does not wait for it.
 #pragma once
+#include <sys/types.h>
+
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace karst::core {
@@ -50,8 +54,12 @@ class DiskWriter {
   };
   bool take(File file, std::string& bytes);
   void run();
-  bool write(const std::vector<Pending>& batch);
-  void sync_others();
+  using FileId = std::pair<dev_t, ino_t>;
+  template <class Step>
+  void guarded(const Step& step);
+  void fail();
+  bool write(const std::vector<Pending>& batch, std::set<FileId>& synced);
+  void sync_others(const std::set<FileId>& synced);
   void sync(const std::filesystem::path& file);
   void sync_folder(const std::filesystem::path& folder);
 

@@ -15,6 +15,7 @@ void RecordFile::open(const std::filesystem::path& path, DiskWriter* disk) {
 }
 
 RecordFile& RecordFile::operator<<(std::string_view bytes) {
+  empty_ = false;
   if (disk_)
     buffer_ += bytes;
   else

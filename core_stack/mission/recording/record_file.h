@@ -14,6 +14,7 @@ class RecordFile {
   /// Makes the file, emptied. Through `disk`, if given, which outlives it. Throws InputError if it cannot be
   /// made.
   void open(const std::filesystem::path& path, DiskWriter* disk);
+  bool empty() const { return empty_; }  // nothing was added
   bool is_open() const { return disk_ != nullptr || out_.is_open(); }
 
   /// Added to the buffer; written by the next flush(), or before it where the buffer is full.
@@ -29,6 +30,7 @@ class RecordFile {
   std::ofstream out_;  // without a disk writer
   DiskWriter* disk_ = nullptr;
   DiskWriter::File file_{};
+  bool empty_ = true;
   std::string buffer_;  // for the disk writer
 };
 

@@ -14,6 +14,8 @@
 namespace karst::core {
 namespace {
 
+constexpr const char *kFramesName = "frames.csv", *kUnsurveyedName = "unsurveyed.csv";
+
 template <class... Numbers>
 std::string formatted(const char* format, Numbers... numbers) {
   std::array<char, 512> line;
@@ -36,7 +38,11 @@ Recorder::Recorder(const std::filesystem::path& run_dir, Durability durability) 
   localization_.open(run_dir / "localization.csv", disk_.get());
   growth_.open(run_dir / "map_growth.bin", disk_.get());
   decisions_.open(run_dir / "decisions.csv", disk_.get());
-  if (disk_) cells_.open(run_dir / kMapCellsName, disk_.get());
+  if (disk_) {  // in flight no file is made: that may wait for the disk
+    cells_.open(run_dir / kMapCellsName, disk_.get());
+    frames_.open(run_dir / kFramesName, disk_.get());
+    unsurveyed_.open(run_dir / kUnsurveyedName, disk_.get());
+  }
   telemetry_ << "t_s,phase,x,y,z,vx,vy,vz,heading_rad,ref_x,ref_y,ref_z,battery_fraction,seconds_left,"
                 "explored_m3,home_distance_m\n";
   localization_
@@ -68,10 +74,8 @@ void Recorder::telemetry(const Telemetry& r) {
 void Recorder::unsurveyed(TimeNs t, double volume_m3) {
   const std::string volume = formatted("%.3f", volume_m3);
   if (volume == last_unsurveyed_) return;
-  if (!unsurveyed_.is_open()) {
-    unsurveyed_.open(directory_ / "unsurveyed.csv", disk_.get());
-    unsurveyed_ << "t_s,unsurveyed_m3\n";
-  }
+  if (!unsurveyed_.is_open()) unsurveyed_.open(directory_ / kUnsurveyedName, nullptr);
+  if (unsurveyed_.empty()) unsurveyed_ << "t_s,unsurveyed_m3\n";
   unsurveyed_ << formatted("%.2f,", seconds(t)) << volume << '\n';
   last_unsurveyed_ = volume;
 }
@@ -96,10 +100,8 @@ void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
 }
 
 void Recorder::frame(const RgbFrame& frame, const Pose& T, const std::string& file) {
-  if (!frames_.is_open()) {
-    frames_.open(directory_ / "frames.csv", disk_.get());
-    frames_ << "stamp_s,file,x,y,z,qx,qy,qz,qw,width,height,fx,fy,cx,cy\n";
-  }
+  if (!frames_.is_open()) frames_.open(directory_ / kFramesName, nullptr);
+  if (frames_.empty()) frames_ << "stamp_s,file,x,y,z,qx,qy,qz,qw,width,height,fx,fy,cx,cy\n";
   const CameraModel& c = frame.model->camera;
   const Quat& q = T.orientation;
   frames_ << formatted("%.3f,", seconds(frame.stamp)) << file
@@ -138,7 +140,12 @@ bool Recorder::flush() {
 bool Recorder::close() {
   bool good = true;
   for (RecordFile* f : files()) good = f->close() && good;
-  return (!disk_ || disk_->finish()) && good;
+  if (!disk_) return good;
+  good = disk_->finish() && good;
+  std::error_code ignored;
+  if (frames_.empty()) std::filesystem::remove(directory_ / kFramesName, ignored);
+  if (unsurveyed_.empty()) std::filesystem::remove(directory_ / kUnsurveyedName, ignored);
+  return good;
 }
 
 }  // namespace karst::core

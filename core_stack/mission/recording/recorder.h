@@ -38,7 +38,7 @@ struct Located {
 };
 
 /// Where the record is once flush() has returned: with the file system, which a killed process does not
-/// affect; or on its way to the disk, which it reaches within a second, so that a power cut costs no more.
+/// affect; or on its way to the disk: it gets there within a second, if the disk keeps up.
 /// The second also records every known cell of the map (map_cells.bin), and no call waits for the disk.
 enum class Durability { survives_a_crash, survives_a_power_cut };
 

@@ -1,13 +1,49 @@
 #include "core_stack/mission/recording/disk_writer.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <fstream>
 #include <iterator>
+#include <mutex>
+#include <new>
+#include <set>
 
 #include "core_stack/common/error.h"
 #include "core_stack/mission/recording/recorder.h"
+
+namespace {
+
+std::atomic<bool> no_memory = false;
+std::mutex sync_mutex;  // of what follows
+std::set<std::string> synced_folders, synced_again;
+
+std::string path_of(int descriptor) {
+  return std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor)).string();
+}
+
+}  // namespace
+
+// Instead of those of the C library.
+extern "C" int fdatasync(int descriptor) {
+  if (no_memory) throw std::bad_alloc();
+  struct stat is {};
+  // The writer's own files are open for writing.
+  if (fstat(descriptor, &is) == 0 && is.st_size > 0 && (fcntl(descriptor, F_GETFL) & O_ACCMODE) == O_RDONLY) {
+    const std::lock_guard lock(sync_mutex);
+    synced_again.insert(path_of(descriptor));
+  }
+  return static_cast<int>(syscall(SYS_fdatasync, descriptor));
+}
+extern "C" int fsync(int descriptor) {
+  const std::lock_guard lock(sync_mutex);
+  synced_folders.insert(path_of(descriptor));
+  return static_cast<int>(syscall(SYS_fsync, descriptor));
+}
 
 namespace karst::core {
 namespace {
@@ -76,6 +112,52 @@ TEST(DiskWriter, AFileThatCannotBeMadeIsAnError) {
   const fs::path dir = folder_of("disk_writer_error");
   DiskWriter disk(dir);
   EXPECT_THROW(disk.open(dir / "no" / "such"), InputError);
+}
+
+TEST(DiskWriter, WhatItsThreadThrowsEndsTheRecordAndNotTheProcess) {
+  const fs::path dir = folder_of("disk_writer_throws");
+  DiskWriter disk(dir);
+  const auto file = disk.open(dir / "a");
+  no_memory = true;
+  std::string bytes = "some";
+  disk.append(file, bytes);
+  EXPECT_FALSE(disk.finish());
+  no_memory = false;
+}
+
+TEST(DiskWriter, AFileThatItHasWrittenIsSyncedOnceAndTheFoldersEntryToo) {
+  const fs::path dir = folder_of("disk_writer_syncs");
+  {
+    DiskWriter disk(dir / "");
+    const auto file = disk.open(dir / "a");
+    std::string bytes = "some";
+    disk.append(file, bytes);
+    std::ofstream(dir / "of_the_vehicle") << "more";
+    EXPECT_TRUE(disk.finish());
+  }
+  const std::lock_guard lock(sync_mutex);
+  const fs::path real = fs::canonical(dir);
+  EXPECT_FALSE(synced_again.contains((real / "a").string()));
+  EXPECT_TRUE(synced_again.contains((real / "of_the_vehicle").string()));
+  EXPECT_TRUE(synced_folders.contains(real.parent_path().string()));
+}
+
+TEST(Recorder, NoFileIsMadeInFlightAndNoneStaysThatIsEmpty) {
+  const fs::path dir = folder_of("recorder_no_file_in_flight");
+  const auto files = [&] {
+    std::set<std::string> names;
+    for (const auto& at : fs::directory_iterator(dir)) names.insert(at.path().filename().string());
+    return names;
+  };
+  Recorder recorder(dir, Durability::survives_a_power_cut);
+  const auto before = files();
+  EXPECT_TRUE(before.contains("frames.csv"));
+  recorder.unsurveyed(kSecond, 1);
+  EXPECT_TRUE(recorder.flush());
+  EXPECT_EQ(files(), before);
+  EXPECT_TRUE(recorder.close());
+  EXPECT_TRUE(files().contains("unsurveyed.csv"));
+  EXPECT_FALSE(files().contains("frames.csv"));
 }
 
 TEST(Recorder, WritesTheSameBytesWhateverItIsToSurvive) {
