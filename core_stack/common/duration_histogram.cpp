@@ -7,7 +7,7 @@
 namespace karst::core {
 namespace {
 
-constexpr int kLinearBits = 5;  // of the 32 buckets in an octave
+constexpr int kLinearBits = DurationHistogram::kLinearBits;
 
 /// Bits by which a duration is shortened to get the number of its bucket.
 int shift_of(std::uint64_t ns) { return std::max(0, static_cast<int>(std::bit_width(ns)) - kLinearBits - 1); }

@@ -12,6 +12,8 @@ namespace karst::core {
 
 class DurationHistogram {
  public:
+  static constexpr int kLinearBits = 5;  // of the 32 buckets in an octave
+
   /// A negative duration counts as 0, one beyond 18 minutes as 18 minutes.
   void add(TimeNs duration);
 
@@ -23,8 +25,8 @@ class DurationHistogram {
   TimeNs quantile(double q) const;
 
  private:
-  static constexpr int kSubBits = 5, kMaxBits = 40;
-  std::array<std::uint32_t, ((kMaxBits - kSubBits) << kSubBits) + (1 << kSubBits)> counts_{};
+  static constexpr int kMaxBits = 40;
+  std::array<std::uint32_t, ((kMaxBits - kLinearBits) << kLinearBits) + (1 << kLinearBits)> counts_{};
   std::uint64_t count_ = 0;
   TimeNs max_ = 0, total_ = 0;
 };

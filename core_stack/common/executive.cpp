@@ -233,7 +233,8 @@ void Executive::forgive(TimeNs due) {
 
 void Executive::run_until(TimeNs limit, const std::function<bool()>& done) {
   const bool real_time = clock_ == Clock::real_time;
-  if (real_time) begin_ = setup_.clock->now() - now_;
+  // Once only: after an exception the time that the failing step took is lateness like any other.
+  if (real_time && begin_ == 0) begin_ = setup_.clock->now() - now_;
   while (!queue_.empty() && queue_.front().time <= limit) {
     if (real_time && finish_late_job()) {
       if (done()) return;

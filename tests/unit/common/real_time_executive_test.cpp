@@ -6,6 +6,7 @@
 #include <future>
 #include <mutex>
 #include <set>
+#include <stdexcept>
 #include <thread>
 
 #include "core_stack/common/executive.h"
@@ -84,6 +85,18 @@ TEST_F(RealTime, ALaneIsAsLateAsItsOldestJobIsBeyondItsBudget) {
   EXPECT_GE(executive.take_lateness(Lane::map), 140 * kMillisecond)
       << "what was late and is done counts once";
   EXPECT_EQ(executive.take_lateness(Lane::map), 0);
+}
+
+TEST_F(RealTime, TheTimeOfAStepThatThrowsIsLatenessOfTheNext) {
+  executive.at(5 * kMillisecond, [&] {
+    clock.pass(30 * kMillisecond);
+    throw std::runtime_error("it fails");
+  });
+  executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [] {});
+  EXPECT_THROW(executive.run_until(kSecond, kNever), std::runtime_error);
+  executive.run_until(kSecond, kNever);
+  EXPECT_EQ(executive.punctuality().at("control").lateness.max(), 25 * kMillisecond)
+      << "due at 10, begun at 35";
 }
 
 TEST_F(RealTime, ALoopThatIsFarBehindSetsItsClockBack) {
