@@ -1,5 +1,7 @@
 #include "sdk/flight/recover_run.h"
 
+#include <optional>
+
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
 #include "core_stack/mission/recording/map_cells.h"
@@ -13,29 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "" if it can be read.
-std::string problem_of_map(const fs::path& file) {
-  try {
-    core::read_octomap(file.string());
-    return "";
-  } catch (const core::InputError& e) {
-    return e.what();
-  }
-}
-
-bool has_whole_map(const fs::path& run_dir, RecoveredMap& out) {
+/// If both files can be read.
+std::optional<core::VoxelMap> whole_map(const fs::path& run_dir, RecoveredMap& out) {
   bool whole = true;
-  for (const char* name : {"map.bt", "map.ot"}) {
-    std::error_code error;
-    if (!fs::exists(run_dir / name, error)) {
+  std::optional<core::VoxelMap> map;
+  for (const char* name : {"map.bt", "map.ot"}) try {
+      std::error_code error;
+      if (fs::exists(run_dir / name, error))
+        map.emplace(core::read_octomap((run_dir / name).string()));
+      else
+        whole = false;
+    } catch (const core::InputError& e) {
+      out.notes.emplace_back(e.what());
       whole = false;
-      continue;
     }
-    const std::string problem = problem_of_map(run_dir / name);
-    if (!problem.empty()) out.notes.push_back(problem);
-    whole = whole && problem.empty();
-  }
-  return whole;
+  return whole ? std::move(map) : std::nullopt;
 }
 
 /// What no other reader misses.
@@ -70,7 +64,13 @@ RecoveredMap recover_map(const fs::path& run_dir) {
     throw core::InputError(run_dir.string(), "", "holds nothing of a flight");
   remove_stale_lock(run_dir);
   note_missing(run_dir, out.notes);
-  if (has_whole_map(run_dir, out)) return out;
+  if (const auto map = whole_map(run_dir, out)) {
+    if (std::error_code error; !fs::exists(run_dir / "map.ply", error)) {
+      core::write_ply(*map, (run_dir / "map.ply").string());
+      out.written = {run_dir / "map.ply"};
+    }
+    return out;
+  }
   if (run.setting("map.resolution").empty())
     out.notes.emplace_back("mission.info: has no map.resolution; 0.2 m is assumed");
   if (const auto map =
