@@ -28,8 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // The time that a step or job may take before the flight is aborted: longer than any decision or plan takes
-// on any machine. In real time a shorter limit holds as well (RealTimeOptions), until the vehicle has landed.
-constexpr std::chrono::seconds kStall{600};
+// on any machine. In real time Lockstep watches.
+constexpr std::chrono::seconds kStallInLockstep{600};
 
 /// Ends the process because the step or job `running` does not return: objects in use by the hanging code
 /// cannot be destroyed. The record is complete up to the last second. Even if nobody reads what it prints,
@@ -67,7 +67,7 @@ std::string page_of(const RealTimeProcess& process, const ServiceManager& servic
   std::array<char, 200> more;
   std::snprintf(more.data(), more.size(),
                 "  watchdog     karst ends if the loop hangs for %.1f s%s\n"
-                "  record       on the disk within a second\n",
+                "  record       on the disk within 2.5 s, if the disk keeps up\n",
                 hang_limit_s,
                 !service.listens()                ? ""
                 : service.watchdog().count() == 0 ? "; systemd is told when it is ready"
@@ -170,6 +170,11 @@ RealTime MissionFlight::real_time() {
   RealTime how;
   how.setup.on_lane_thread = [&process](core::Lane lane) { process.prepare_thread(role_of(lane)); };
   how.on_loop_thread = [&process] { process.prepare_thread(ThreadRole::loop); };
+  how.on_flown = [this, &process] {
+    in_the_air_ = false;
+    if (!process.release_thread() && request_.notes)
+      print_error("note: the record is completed with the priority of the flight\n");
+  };
   how.on_watch_thread = [&process] { process.prepare_thread(ThreadRole::watchdog); };
   how.hang_limit = std::chrono::milliseconds(static_cast<long>(1e3 * mission_.real_time.hang_limit_s));
   how.on_landed = [this] { in_the_air_ = false; };
@@ -209,11 +214,13 @@ core::TimeNs MissionFlight::run(const std::atomic<bool>& interrupted) {
     print_error("%s", page_of(*r.real_time, r.service, mission_.real_time.hang_limit_s).c_str());
   r.service.notify("READY=1\nSTATUS=flying");
   std::optional<StatusLine> line;
-  if (request_.status_line) line.emplace(members_.size());
+  if (request_.status_line) line.emplace(members_.size(), request_.clock);
   std::vector<const core::Executive*> executives;
   for (std::size_t i = 0; i < members_.size(); ++i) executives.push_back(&running_->lockstep->executive(i));
-  const core::StallWatch stall(
-      executives, kStall, [this](const std::string& running) { end_stalled(running, request_.run_dir); });
+  std::optional<core::StallWatch> stall;
+  if (request_.clock == core::Clock::lockstep)
+    stall.emplace(std::move(executives), kStallInLockstep,
+                  [this](const std::string& running) { end_stalled(running, request_.run_dir); });
   in_the_air_ = true;
   const core::TimeNs end = running_->lockstep->run([&](core::TimeNs now, const auto& all) {
     if (line) line->show(now, all);
@@ -221,7 +228,6 @@ core::TimeNs MissionFlight::run(const std::atomic<bool>& interrupted) {
   });
   in_the_air_ = false;
   if (line) line->end();
-  if (r.real_time) r.real_time->release_thread();
   r.service.notify("STATUS=evaluating the flight");
   return end;
 }
@@ -307,6 +313,7 @@ FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
     outcome.metrics =
         outcome.team ? finish_members(outcome, wall.count()) : finish_alone(outcome, wall.count());
   } catch (const std::exception& e) {  // such as a full disk: the flight still took place
+    in_the_air_ = false;
     outcome.record_problem = e.what();
   }
   outcome.as_meant = outcome.record_problem.empty() && !outcome.endings.empty() &&

@@ -55,25 +55,28 @@ TimeNs Lockstep::run(const FlightWatch& watch) {
   return now_;
 }
 
-/// No vehicle waits for another: the whole flight is one step. The loop is watched only while it flies: the
-/// map takes longer to write.
+/// No vehicle waits for another: the whole flight is one step. After it the watch is patient: a large map
+/// takes long to write.
 void Lockstep::run_in_real_time(const FlightWatch& watch) {
   Vehicle& vehicle = *vehicles_.front();
   const RealTime& how = how_.real_time;
   vehicle.control = std::make_unique<core::MissionControl>(options_, *vehicle.seat.vehicle, vehicle.executive,
                                                            *vehicle.seat.policy, *vehicle.seat.recorder);
-  {
-    std::optional<core::StallWatch> stall;
+  std::optional<core::StallWatch> stall;
+  const auto allow = [&](std::chrono::milliseconds limit) {
+    stall.reset();
     if (how.on_hang)
-      stall.emplace(std::vector<const core::Executive*>{&vehicle.executive}, how.hang_limit, how.on_hang,
+      stall.emplace(std::vector<const core::Executive*>{&vehicle.executive}, limit, how.on_hang,
                     how.on_watch_thread);
-    if (how.on_loop_thread) how.on_loop_thread();
-    vehicle.control->fly([&](const core::MissionStatus& status) {
-      vehicle.state.status = status;
-      return watch(status.time, {status});
-    });
-  }
-  if (how.on_landed) how.on_landed();
+  };
+  allow(how.hang_limit);
+  if (how.on_loop_thread) how.on_loop_thread();
+  vehicle.control->fly([&](const core::MissionStatus& status) {
+    vehicle.state.status = status;
+    return watch(status.time, {status});
+  });
+  allow(how.end_limit);
+  if (how.on_flown) how.on_flown();
   now_ = vehicle.executive.now();
   vehicle.end(now_);
 }

@@ -21,10 +21,8 @@
 namespace karst::flight {
 namespace {
 
-/// By role; 0: a usual thread. Sensing, map and pictures have none, so that a policy in a process of its own
-/// gets its share beside them.
-constexpr std::array kPriorities = {45, 40, 30, 0, 0, 0};
-constexpr std::size_t kStackBytes = 512 * 1024;  // of the loop's thread, touched before the flight
+constexpr std::array kPriorities = {45, 40, 30, 0, 0, 0};  // by role; 0: a usual thread
+constexpr std::size_t kStackBytes = 512 * 1024;            // of the loop's thread, touched before the flight
 
 /// 0, or the reason why not.
 int set_fifo(int priority) {
@@ -32,10 +30,10 @@ int set_fifo(int priority) {
   return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &param) == 0 ? 0 : errno;
 }
 
-void set_usual() {
+/// 0, or the reason why not. The flag stays: to clear it needs CAP_SYS_NICE.
+int set_usual() {
   const sched_param param{};
-  // The flag of set_fifo stays: only a process that may do anything may take it away.
-  sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &param);
+  return sched_setscheduler(0, SCHED_OTHER | SCHED_RESET_ON_FORK, &param) == 0 ? 0 : errno;
 }
 
 bool may_lock_any_memory() {
@@ -132,7 +130,7 @@ RealTimeProcess::~RealTimeProcess() {
 Grant RealTimeProcess::try_priorities() {
   if (!options_.priorities) return {"priorities", false, "not asked for (real_time.priorities)"};
   for (const int priority : kPriorities) {
-    const int error = priority > 0 ? set_fifo(priority) : 0;
+    const int error = priority == 0 ? 0 : set_fifo(priority);
     if (error == 0) continue;
     set_usual();
     return {"priorities", false,
@@ -140,7 +138,9 @@ Grant RealTimeProcess::try_priorities() {
                 std::to_string(kPriorities.front()) +
                 " in limits.conf, or LimitRTPRIO in the unit, allows them"};
   }
-  set_usual();
+  if (const int error = set_usual(); error != 0)
+    return {"priorities", false,
+            std::string("not used, as they cannot be given back: ") + std::strerror(error)};
   has_priorities_ = true;
   std::string text = "SCHED_FIFO:";
   for (const auto& [role, name] : names_of(ThreadRole{}))
@@ -204,9 +204,9 @@ void RealTimeProcess::prepare_thread(ThreadRole role) const {
   }
 }
 
-void RealTimeProcess::release_thread() const {
-  if (has_priorities_) set_usual();
-  sched_setaffinity(0, sizeof all_cpus_, &all_cpus_);
+bool RealTimeProcess::release_thread() const {
+  const bool is_usual = !has_priorities_ || set_usual() == 0;
+  return sched_setaffinity(0, sizeof all_cpus_, &all_cpus_) == 0 && is_usual;
 }
 
 std::string RealTimeProcess::page() const {

@@ -12,7 +12,8 @@
 namespace karst::flight {
 
 /// Highest priority first. The watchdog must see a loop that spins. All are below 50, the priority of the
-/// kernel's interrupt threads with PREEMPT_RT, which bring the vehicle's messages.
+/// kernel's interrupt threads with PREEMPT_RT, which bring the vehicle's messages. From sensing on they are
+/// usual threads: with a priority they would starve a policy in a process of its own, which has none.
 enum class ThreadRole { watchdog, loop, localization, sensing, map, pictures };
 constexpr auto names_of(ThreadRole) {
   using enum ThreadRole;
@@ -23,7 +24,7 @@ constexpr auto names_of(ThreadRole) {
                                                  {map, "map"},
                                                  {pictures, "pictures"}});
 }
-int priority_of(ThreadRole role);
+int priority_of(ThreadRole role);  // 0: a usual thread
 ThreadRole role_of(core::Lane lane);
 
 /// What was asked for, and what came of it.
@@ -45,8 +46,9 @@ class RealTimeProcess {
   /// Gives the calling thread its priority and processors, as far as they were granted. What it starts later
   /// has neither. From any thread.
   void prepare_thread(ThreadRole role) const;
-  /// The calling thread becomes a usual one again: evaluating a flight is no real-time work.
-  void release_thread() const;
+  /// The calling thread becomes a usual one again: evaluating a flight is no real-time work. False if
+  /// the kernel refuses.
+  bool release_thread() const;
 
   const std::vector<Grant>& grants() const { return grants_; }
   std::string page() const;

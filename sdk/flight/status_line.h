@@ -1,22 +1,38 @@
 // Status output during a flight: for one vehicle a line that is updated on a terminal, elsewhere a new line
 // every half minute of flight; for a team a new line every half minute.
+//
+// In real time a thread of its own prints: a terminal that is stopped (Ctrl-S), or a pipe that nobody reads,
+// must not hold up the loop. What is not printed yet when the next comes is left out.
 #pragma once
+#include <string>
+#include <thread>
 #include <vector>
 
+#include "core_stack/common/inheriting_mutex.h"
 #include "core_stack/mission/mission_control.h"
 
 namespace karst::flight {
 
 class StatusLine {
  public:
-  explicit StatusLine(std::size_t vehicles);
-  void show(core::TimeNs now, const std::vector<core::MissionStatus>& vehicles) const;
-  void end() const;
+  explicit StatusLine(std::size_t vehicles, core::Clock clock = core::Clock::lockstep);
+  ~StatusLine();
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+  void show(core::TimeNs now, const std::vector<core::MissionStatus>& vehicles);
+  /// Waits until what was to be shown is printed.
+  void end();
 
  private:
-  void show_alone(const core::MissionStatus& status) const;
+  void show_alone(const core::MissionStatus& status);
+  void print_all();
 
-  bool renews_;  // updates one line, on a terminal
+  bool renews_;                  // updates one line, on a terminal
+  core::InheritingMutex mutex_;  // of what follows
+  core::Condition wake_;
+  std::string next_;
+  bool over_ = false;
+  std::thread printer_;  // in real time
 };
 
 }  // namespace karst::flight

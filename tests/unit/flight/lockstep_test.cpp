@@ -118,6 +118,24 @@ TEST(Lockstep, InRealTimeOneVehicleFliesToItsEnd) {
   EXPECT_EQ(flight.state(0).ended->reason, "hit a rock");
 }
 
+/// From then on no step is due, and the map is written: whoever looks for signs of life must know.
+TEST(Lockstep, InRealTimeItSaysThatItHasFlownBeforeTheRecordIsCompleted) {
+  const Crew crew({{0, 50 * kMillisecond}});
+  LockstepOptions how{.clock = core::Clock::real_time};
+  int flown = 0;
+  const Lockstep* flying = nullptr;
+  how.real_time.on_flown = [&] {
+    ++flown;
+    EXPECT_FALSE(flying->state(0).ended);
+    EXPECT_GE(flying->executive(0).now(), 50 * kMillisecond);
+  };
+  Lockstep flight({}, how, crew.seats());
+  flying = &flight;
+  flight.run(watch_on);
+  EXPECT_EQ(flown, 1);
+  EXPECT_TRUE(flight.state(0).ended);
+}
+
 /// Its loop does not return from a step.
 class HangingVehicle final : public core::Vehicle {
  public:

@@ -34,7 +34,7 @@ TEST(Cpus, WhatIsNoListIsRefusedWithItsPlace) {
   }
 }
 
-TEST(ThreadRoles, TheOrderIsWatchdogLoopLocalizationAndTheOthersAreUsualThreads) {
+TEST(ThreadRoles, TheOrderIsWatchdogLoopLocalizationAndAUsualThreadStarvesNoPolicy) {
   using enum ThreadRole;
   int last = 50;  // the kernel's interrupt threads
   for (const ThreadRole role : {watchdog, loop, localization}) {
@@ -42,8 +42,7 @@ TEST(ThreadRoles, TheOrderIsWatchdogLoopLocalizationAndTheOthersAreUsualThreads)
     last = priority_of(role);
   }
   EXPECT_GE(last, 1) << "above every usual thread";
-  for (const ThreadRole role : {sensing, map, pictures})
-    EXPECT_EQ(priority_of(role), 0) << core::name_of(role);
+  for (const ThreadRole role : {sensing, map, pictures}) EXPECT_EQ(priority_of(role), 0);
   std::set<ThreadRole> of_lanes;
   for (const auto& [lane, name] : core::names_of(core::Lane{})) {
     of_lanes.insert(role_of(lane));
@@ -68,7 +67,7 @@ TEST(RealTimeProcess, AThreadHasThePriorityThatThePageSays) {
     EXPECT_EQ(policy, granted ? SCHED_FIFO : SCHED_OTHER);
     EXPECT_EQ(param.sched_priority, granted ? priority_of(ThreadRole::localization) : 0);
     std::thread([] { EXPECT_EQ(sched_getscheduler(0), SCHED_OTHER) << "what it starts has none"; }).join();
-    process.release_thread();
+    EXPECT_TRUE(process.release_thread());
     EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER);
   }).join();
   EXPECT_EQ(sched_getscheduler(0) & ~SCHED_RESET_ON_FORK, SCHED_OTHER) << "trying leaves nothing behind";
