@@ -170,14 +170,13 @@ RealTime MissionFlight::real_time() {
   RealTime how;
   how.setup.on_lane_thread = [&process](core::Lane lane) { process.prepare_thread(role_of(lane)); };
   how.on_loop_thread = [&process] { process.prepare_thread(ThreadRole::loop); };
-  how.on_flown = [this, &process] {
+  how.on_landed = [this, &process] {
     in_the_air_ = false;
     if (!process.release_thread() && request_.notes)
       print_error("note: the record is completed with the priority of the flight\n");
   };
   how.on_watch_thread = [&process] { process.prepare_thread(ThreadRole::watchdog); };
   how.hang_limit = std::chrono::milliseconds(static_cast<long>(1e3 * mission_.real_time.hang_limit_s));
-  how.on_landed = [this] { in_the_air_ = false; };
   how.on_hang = [this](const std::string& running) { end_stalled(running, request_.run_dir); };
   return how;
 }

@@ -76,7 +76,7 @@ void Lockstep::run_in_real_time(const FlightWatch& watch) {
     return watch(status.time, {status});
   });
   allow(how.end_limit);
-  if (how.on_flown) how.on_flown();
+  if (how.on_landed) how.on_landed();
   now_ = vehicle.executive.now();
   vehicle.end(now_);
 }

@@ -60,11 +60,10 @@ using FlightWatch = std::function<bool(core::TimeNs now, const std::vector<core:
 struct RealTime {
   core::RealTimeSetup setup;
   std::function<void()> on_loop_thread, on_watch_thread;  // called once on these, before the flight
-  std::function<void()> on_flown;  // called on the loop's thread when it stands still for good: the vehicle
-                                   // has ended its flight, and the map is not written yet
+  std::function<void()> on_landed;  // called on the loop's thread when it stands still for good: the vehicle
+                                    // has ended its flight, and the map is not written yet
   std::chrono::milliseconds hang_limit{2000}, end_limit{600'000};  // in flight; while the record is completed
   core::StallWatch::Report on_hang;  // if the loop hangs for so long; empty: nobody watches
-  std::function<void()> on_landed;   // the mission is over; what follows may take its time
 };
 
 struct LockstepOptions {

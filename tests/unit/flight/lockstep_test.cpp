@@ -124,7 +124,7 @@ TEST(Lockstep, InRealTimeItSaysThatItHasFlownBeforeTheRecordIsCompleted) {
   LockstepOptions how{.clock = core::Clock::real_time};
   int flown = 0;
   const Lockstep* flying = nullptr;
-  how.real_time.on_flown = [&] {
+  how.real_time.on_landed = [&] {
     ++flown;
     EXPECT_FALSE(flying->state(0).ended);
     EXPECT_GE(flying->executive(0).now(), 50 * kMillisecond);
