@@ -55,7 +55,7 @@ std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& fre
 
 std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles& free, const Vec3& start,
                                                   double clearance_m, std::size_t max_cells) {
-  constexpr double kLongest_m = 15;
+  constexpr double kLongest_m = 15, kWeight = 1.2;
   struct Visit {
     double length_m;
     CellKey parent;
@@ -72,13 +72,14 @@ std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles
   const double kept_m = std::min(clearance_m, std::max(0.0, anywhere.nearest(start, clearance_m).distance_m -
                                                                 0.25 * free.resolution_m()));
 
-  // A*: the depth grows by no more than the distance moved, so what is missing is a consistent lower bound.
+  // Weighted A*: the depth grows by no more than the distance moved, so what is missing is a consistent lower
+  // bound. A clear cell lies deeper; without the weight that difference would widen the search to a ball.
   const FlightRegion* region = map.region();
   const auto missing_m = [region](const Vec3& p) {
     return region ? std::max(0.0, region->limits().margin_m - region->depth_m(p)) : 0.0;
   };
   std::map<CellKey, Visit> visits{{first, {0, first}}};
-  std::set<std::pair<double, CellKey>> open{{missing_m(start), first}};
+  std::set<std::pair<double, CellKey>> open{{kWeight * missing_m(start), first}};
   for (std::size_t cells = 0; !open.empty() && cells < max_cells; ++cells) {
     const CellKey k = open.begin()->second;
     const double length_m = visits.at(k).length_m;
@@ -97,14 +98,14 @@ std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles
       const Vec3 q = free.center_of(n);
       const double further_m = length_m + (q - p).norm();
       const auto known = visits.find(n);
-      const double bound_m = further_m + missing_m(q);
-      if (n == first || bound_m > kLongest_m ||
+      const double rest_m = missing_m(q);
+      if (n == first || further_m + rest_m > kLongest_m ||
           (known != visits.end() && known->second.length_m <= further_m) ||
           !anywhere.segment_clear(p, q, kept_m))
         continue;
-      if (known != visits.end()) open.erase({known->second.length_m + missing_m(q), n});
+      if (known != visits.end()) open.erase({known->second.length_m + kWeight * rest_m, n});
       visits[n] = {further_m, k};
-      open.insert({bound_m, n});
+      open.insert({further_m + kWeight * rest_m, n});
     }
   }
   return std::nullopt;

@@ -14,9 +14,10 @@ namespace karst::core {
 std::optional<std::vector<Vec3>> escape_path(const VoxelMap& map, FreeTiles& free, const Vec3& start,
                                              double clearance_m);
 
-/// The shortest path from `start`, in a free cell outside the map's region, to the centre of a clear cell
-/// inside, at most 15 m long. All of it keeps the clearance from rock and unknown cells, or as much as
-/// `start` has. It begins with `start`. Nothing if there is none, or if `max_cells` visited do not suffice.
+/// A path at most 1.2 times as long as the shortest from `start`, in a free cell outside the map's region, to
+/// the centre of a clear cell inside, at most 15 m long. All of it keeps the clearance from rock and unknown
+/// cells, or as much as `start` has. It begins with `start`. Nothing if there is none, or if `max_cells`
+/// visited do not suffice.
 std::optional<std::vector<Vec3>> path_back_inside(const VoxelMap& map, FreeTiles& free, const Vec3& start,
                                                   double clearance_m, std::size_t max_cells = 10'000);
 
