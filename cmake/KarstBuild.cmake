@@ -93,6 +93,25 @@ function(karst_library name)
   karst_use_pch(${name} karst_library_pch)
 endfunction()
 
+# karst_vehicle(NAME LIBRARIES libs... [FOR_TESTS]): the vehicle plugin libkarst_vehicle_NAME.so of the folder's plugin.cpp,
+# which exports one symbol, karst_vehicle_plugin. FOR_TESTS: it is built on request only, and not installed.
+function(karst_vehicle name)
+  cmake_parse_arguments(A "FOR_TESTS" "" "LIBRARIES" ${ARGN})
+  set(target karst_vehicle_${name})
+  add_library(${target} MODULE plugin.cpp)
+  target_compile_options(${target} PRIVATE ${KARST_WARNINGS})
+  target_link_libraries(${target} PRIVATE ${A_LIBRARIES})
+  target_link_options(${target} PRIVATE -Wl,--exclude-libs,ALL)
+  set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+                        LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/karst/vehicles)
+  if(A_FOR_TESTS)
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    return()
+  endif()
+  # Where `karst` looks: next to its own folder, whatever the distribution calls its library folder.
+  install(TARGETS ${target} LIBRARY DESTINATION lib/karst/vehicles)
+endfunction()
+
 # karst_test(NAME sources... [LINK libs...] [LABELS labels...]): a GoogleTest program, one CTest entry a test.
 # Label "unit" is the default; "flight" marks closed-loop missions.
 function(karst_test name)

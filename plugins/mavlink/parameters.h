@@ -38,7 +38,7 @@ class ParameterReader {
  public:
   ParameterReader(std::vector<ParameterRule> rules, Firmware firmware)
       : rules_(std::move(rules)), firmware_(firmware) {}
-  /// The parameter to ask for now.
+  /// The next parameter to ask for, if it is time to.
   std::optional<ParamRequestRead> due(core::TimeNs now);
   void on_value(const ParamValue& value);
   std::vector<core::VehicleCheck> checks() const;

@@ -32,6 +32,9 @@ class MavlinkPlugin final : public core::VehiclePlugin {
     if (lidar_.unit == lidar::LidarUnit::none)
       throw core::InputError("vehicle mavlink", "mavlink.lidar.unit",
                              "is none: without a LiDAR the core cannot tell where it is");
+    if (lidar_.imu)
+      throw core::InputError("vehicle mavlink", "mavlink.lidar.imu",
+                             "is not used: the IMU is the autopilot's");
     mavlink::MavlinkVehicle::Parts parts;
     parts.description.name = "mavlink";
     parts.description.radius_m = body_.radius_m;

@@ -2,6 +2,7 @@
 
 #include "core_stack/common/xml_text.h"
 #include "sdk/evaluation/page/page.h"
+#include "sdk/preflight/page_head.h"
 #include "sdk/preflight/preflight_json.h"
 #include "sdk/preflight/preflight_words.h"
 
@@ -40,21 +41,6 @@ td { vertical-align: top; padding: .4mm 0; }
 }
 )css";
 
-/// The page's text follows the marks, so that no mark in it is taken for one of them.
-constexpr const char* kHead = R"html(<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<title>karst preflight</title>
-<link rel="icon" href="data:,">
-<style>@style@</style>
-<script type="application/json" id="data">@data@</script>@libraries@@scripts@
-</head>
-<body>
-)html";
-
 std::string list_of_findings(const std::vector<Finding>& findings, Severity severity, const char* title) {
   std::string items;
   for (const Finding& f : findings)
@@ -81,7 +67,7 @@ std::string preflight_page(const Preflight& preflight, const std::vector<Finding
   if (preflight.cave)
     if (const std::string svg = to_svg(preflight.cave->plan); !svg.empty())
       body += svg + "<p class=\"note\">The cave from above, north up; the dot is the start.</p>\n";
-  const std::string markup = kHead + body + "</body>\n</html>\n";
+  const std::string markup = page_head("karst preflight") + body + "</body>\n</html>\n";
   return evaluation::assemble_page({.markup = markup, .styles = {kStyle}, .libraries = {}, .scripts = {}},
                                    to_json(preflight, findings));
 }

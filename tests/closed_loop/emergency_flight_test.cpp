@@ -10,6 +10,7 @@
 #include "plugins/simulator/simulated_vehicle.h"
 #include "tests/closed_loop/command.h"
 #include "tests/closed_loop/drawn_cave.h"
+#include "tests/closed_loop/tourist.h"
 
 namespace {
 thread_local bool out_of_memory = false;
@@ -194,24 +195,6 @@ class StarvedVehicle final : public Vehicle {
   sim::SimulatedVehicle& vehicle_;
   const FaultyExecutive& starving_;
   std::optional<StarvedSink> sink_;
-};
-
-/// The nearest frontier, and home after a while.
-class Tourist final : public PolicyPort {
- public:
-  explicit Tourist(TimeNs home_after) : home_after_(home_after) {}
-  std::string name() const override { return "tourist"; }
-  Decision decide(const DecisionRequest& request) override {
-    if (request.stamp < home_after_) return nearest_.decide(request);
-    Decision home;
-    home.outcome = Outcome::go_home;
-    return home;
-  }
-  void notify(const PolicyEvent&) override {}
-
- private:
-  FallbackPolicy nearest_;
-  TimeNs home_after_;
 };
 
 struct Ended {

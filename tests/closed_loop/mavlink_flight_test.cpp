@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/mission/mission_control.h"
-#include "core_stack/mission/policy/fallback_policy.h"
 #include "plugins/simulated_autopilot/autopilot_vehicle.h"
 #include "plugins/simulator/cave_generator/generate_cave.h"
 #include "tests/closed_loop/command.h"
+#include "tests/closed_loop/tourist.h"
 
 namespace karst::core {
 namespace {
@@ -30,24 +30,6 @@ const cave::Cave& small_cave() {
   }();
   return small;
 }
-
-/// The nearest frontier, and home after a while.
-class Tourist final : public PolicyPort {
- public:
-  explicit Tourist(TimeNs home_after) : home_after_(home_after) {}
-  std::string name() const override { return "tourist"; }
-  Decision decide(const DecisionRequest& request) override {
-    if (request.stamp < home_after_) return nearest_.decide(request);
-    Decision home;
-    home.outcome = Outcome::go_home;
-    return home;
-  }
-  void notify(const PolicyEvent&) override {}
-
- private:
-  FallbackPolicy nearest_;
-  TimeNs home_after_;
-};
 
 struct Flown {
   MissionResult result;

@@ -6,6 +6,7 @@
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/xml_text.h"
 #include "sdk/evaluation/page/page.h"
+#include "sdk/preflight/page_head.h"
 #include "sdk/preflight/vehicle/vehicle_plots.h"
 #include "sdk/preflight/vehicle/vehicle_words.h"
 
@@ -46,21 +47,6 @@ svg { display: block; width: 100%; height: auto; }
 @media print { body { padding: 0; max-width: none; font-size: 7.5pt; line-height: 1.2; }
   table, ul { break-inside: avoid; } h2 { break-after: avoid; } }
 )css";
-
-/// The page's text follows the marks, so that no mark in it is taken for one of them.
-constexpr const char* kChecklistHead = R"html(<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<title>karst preflight of a vehicle</title>
-<link rel="icon" href="data:,">
-<style>@style@</style>
-<script type="application/json" id="data">@data@</script>@libraries@@scripts@
-</head>
-<body>
-)html";
 
 std::string list_of(const std::vector<Check>& checks, Outcome outcome, const char* title) {
   std::string items;
@@ -111,7 +97,7 @@ std::string vehicle_page(const VehicleMeasurements& m, const std::vector<Check>&
   body +=
       "<p class=\"sign\">Date, time and place: ______________________ Pilot: ____________________ Go: "
       "<span class=\"box\"></span></p>\n";
-  const std::string markup = kChecklistHead + body + "</body>\n</html>\n";
+  const std::string markup = page_head("karst preflight of a vehicle") + body + "</body>\n</html>\n";
   return evaluation::assemble_page(
       {.markup = markup, .styles = {kChecklistStyle}, .libraries = {}, .scripts = {}}, to_json(m, checks));
 }
