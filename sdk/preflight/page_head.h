@@ -4,8 +4,8 @@
 
 namespace karst::preflight {
 
-/// `title`: plain text. What is written into the page follows the marks, so that no mark in it is taken for one
-/// of them.
+/// `title`: plain text. What is written into the page follows the marks, so that no mark in it is taken for
+/// one of them.
 inline std::string page_head(const std::string& title) {
   return R"html(<!doctype html>
 <html lang="en">
