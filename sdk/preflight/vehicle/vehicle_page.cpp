@@ -16,7 +16,7 @@ namespace {
 using core::xml_text;
 
 constexpr const char* kChecklistStyle = R"css(
-@page { size: A4; margin: 10mm 12mm; }
+@page { size: A4; margin: 8mm 12mm; }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 186mm; padding: 5mm 4mm; color: #111; background: #fff;
   font: 9pt/1.3 system-ui, "DejaVu Sans", sans-serif; overflow-wrap: anywhere; }
@@ -32,11 +32,12 @@ ul.boxes { list-style: none; padding: 0; columns: 2; column-gap: 6mm; }
 ul.boxes li { padding-left: 6mm; text-indent: -6mm; margin-bottom: .8mm; break-inside: avoid; }
 .box { display: inline-block; width: 3mm; height: 3mm; border: .3mm solid #111; margin-right: 3mm; text-indent: 0; }
 .plots { display: flex; gap: 4mm; align-items: flex-start; margin-top: 2mm; }
-.plots > div { flex: 1 1 0; } .plots > .beside { flex: 0 0 48mm; }
+.plots > div { flex: 1 1 0; min-width: 0; } .plots > .around { flex: 0 0 38mm; }
 svg { display: block; width: 100%; height: auto; }
 .plot text { font-size: 2.7px; font-family: system-ui, "DejaVu Sans", sans-serif; }
 .plot .frame { fill: none; stroke: #999; stroke-width: .2; }
 .plot .curve { fill: none; stroke-width: .4; } .plot .wide { stroke-width: 1.6; }
+.around svg { max-height: 26mm; }
 .pad path { fill: none; stroke-linecap: round; }
 .pad .floor { stroke: #bbb; stroke-width: .03; } .pad .walls { stroke: #111; stroke-width: .05; }
 .pad .hull { fill: none; stroke: #111; stroke-width: .04; }
@@ -74,9 +75,11 @@ std::string table_of_passed(const std::vector<Check>& checks) {
 std::string plots_of(const VehicleMeasurements& m) {
   const std::string rates = rates_svg(m), turns = turns_svg(m), pad = pad_svg(m);
   if (rates.empty() && turns.empty() && pad.empty()) return "";
-  std::string out = "<div class=\"plots\"><div>" + rates + turns + "</div>";
+  std::string out = "<div class=\"plots\">";
+  for (const std::string& plot : {rates, turns})
+    if (!plot.empty()) out += "<div>" + plot + "</div>";
   if (!pad.empty())
-    out += "<div class=\"beside\">" + pad +
+    out += "<div class=\"around\">" + pad +
            "<p class=\"note\">A scan around the pad from above, forward is up. Black: at the heights of the "
            "climb. Circle: hull; dashed: the room it needs.</p></div>";
   return out + "</div>\n";

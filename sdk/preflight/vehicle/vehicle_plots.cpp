@@ -18,7 +18,7 @@ struct Curve {
   std::vector<std::pair<double, double>> points;
 };
 
-/// A box of 88 x 46 mm with curves over time, and their names to the right.
+/// A box 70 mm wide with curves over time, and their names below, two in a row.
 class Plot {
  public:
   Plot(double end_s, double top, std::string y_title) : end_s_(std::max(end_s, 1e-3)), top_(top) {
@@ -39,11 +39,12 @@ class Plot {
     std::string d;
     for (const auto& [x, y] : curve.points)
       d += format_text("%c%.2f %.2f", d.empty() ? 'M' : 'L', x_of(x), y_of(std::clamp(y, 0.0, top_)));
-    const double y = kTop + 3 + 4.0 * curves_++;
+    const double x = kLeft + kNameWidth * (curves_ % kNamesInARow),
+                 y = kTop + kHeight + 8 + 4.0 * (curves_ / kNamesInARow);
+    ++curves_;
     body_ += "<path " + curve.style + " d=\"" + d + "\"/>\n" +
-             format_text("<path %s d=\"M%g %gh6\"/>\n", curve.style.c_str(), kLeft + kWidth + 3, y - 1) +
-             format_text("<text x=\"%g\" y=\"%g\">", kLeft + kWidth + 10, y) + core::xml_text(curve.name) +
-             "</text>\n";
+             format_text("<path %s d=\"M%g %gh5\"/>\n", curve.style.c_str(), x, y - 1) +
+             format_text("<text x=\"%g\" y=\"%g\">", x + 6, y) + core::xml_text(curve.name) + "</text>\n";
   }
   void mark(double x) {
     body_ += format_text("<path class=\"frame\" stroke-dasharray=\"1 1\" d=\"M%.2f %gv%g\"/>\n", x_of(x),
@@ -52,13 +53,14 @@ class Plot {
   std::string svg(const char* label) const {
     return format_text(
                "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" role=\"img\" aria-label=\"%s\" "
-               "viewBox=\"0 0 122 46\">\n",
-               label) +
+               "viewBox=\"0 0 70 %g\">\n",
+               label, kTop + kHeight + 6 + 4.0 * ((curves_ + kNamesInARow - 1) / kNamesInARow)) +
            body_ + "</svg>\n";
   }
 
  private:
-  static constexpr double kLeft = 9, kTop = 6, kWidth = 78, kHeight = 33;
+  static constexpr double kLeft = 9, kTop = 6, kWidth = 56, kHeight = 24, kNameWidth = 30;
+  static constexpr int kNamesInARow = 2;
   double x_of(double s) const { return kLeft + kWidth * s / end_s_; }
   double y_of(double v) const { return kTop + kHeight * (1 - v / top_); }
 
