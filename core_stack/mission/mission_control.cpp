@@ -398,7 +398,7 @@ void MissionControl::on_authority(TimeNs, Authority who, const std::string& reas
 void MissionControl::let_go(const std::string& reason) {
   onboard_.flight.let_go();
   if (phases_.in(Phase::manual) || emergency_) return;
-  resumes_ = phases_.in(Phase::home) || phases_.in(Phase::land)     ? Phase::home
+  resumes_ = phases_.in(Phase::home) || phases_.in(Phase::land)     ? phases_.phase()
              : phases_.in(Phase::explore) || onboard_.vehicle.lidar ? Phase::explore
                                                                     : Phase::look;
   path_.brake(now());  // nothing that was planned before is flown later
@@ -429,9 +429,16 @@ void MissionControl::take_over() {
     flown_path_.begin(here);
     return_home_.set_home(here);
   }
-  if (resumes_ == Phase::home) return return_home_.begin("the core steers again");
+  // In the middle of its landing it may be too near to the ground to fly anywhere first.
+  if (resumes_ == Phase::land && lands_at_home()) return enter(Phase::land, "the core steers again");
+  if (resumes_ == Phase::home || resumes_ == Phase::land) return return_home_.begin("the core steers again");
   if (resumes_ == Phase::look) onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
   enter(resumes_, "the core steers again");
+}
+
+bool MissionControl::lands_at_home() const {
+  constexpr double kBeside_m = 0.5;
+  return (onboard_.flight.state().position - return_home_.hover()).head<2>().norm() < kBeside_m;
 }
 
 MapQuestion MissionControl::map_question() const {

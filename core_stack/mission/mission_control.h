@@ -115,6 +115,7 @@ class MissionControl final : public VehicleSink {
   void land_here(const std::string& reason);
   void land();
   bool found_again() const;
+  bool lands_at_home() const;
   bool may_fly();
   void let_go(const std::string& reason);
   void wait_on_ground();

@@ -11,7 +11,8 @@ namespace karst::mavlink {
 
 class ClockSync {
  public:
-  /// Ignores what cannot be: an answer from the future, or one that took a second.
+  /// Ignores what cannot be: an answer from the future, or one that took a second. An answer that contradicts
+  /// the earlier ones counts alone: the autopilot's clock was set.
   void note_answer(core::TimeNs asked_at, core::TimeNs autopilot_time, core::TimeNs now);
 
   bool known() const { return !exchanges_.empty(); }

@@ -87,7 +87,7 @@ void HandOver::on_mode(const Mode& mode, bool failsafe, TimeNs now) {
   left_for_silence_ = by_itself && mode.name == "hold" && (steered_before_silence_ || offboard_lost);
 }
 
-void HandOver::on_refused(const std::string& why, TimeNs) {
+void HandOver::on_refused(const std::string& why) {
   refused_ = "mode " + mode_of(firmware_, setpoint_mode(firmware_)).name + " refused: " + why;
 }
 

@@ -48,7 +48,7 @@ class HandOver {
   void on_any_message(core::TimeNs now);
   void on_ground(bool standing) { standing_ = standing; }
   /// The autopilot did not grant the mode.
-  void on_refused(const std::string& why, core::TimeNs now);
+  void on_refused(const std::string& why);
 
   /// To be called in every step.
   Steering steering(core::TimeNs now);

@@ -5,6 +5,7 @@
 
 #include "plugins/mavlink/link_record.h"
 #include "plugins/mavlink/ned.h"
+#include "plugins/mavlink/sensor_health.h"
 #include "plugins/mavlink/setpoints.h"
 
 namespace karst::mavlink {
@@ -171,8 +172,10 @@ void MavlinkVehicle::ask_for_telemetry() {
     ask(RawImu::kId, options_.imu_rate_hz);
     ask(ScaledPressure::kId, 20);
   }
+  ask(Heartbeat::kId, 5);
   ask(ExtendedSysState::kId, 10);
   ask(BatteryStatus::kId, 2);
+  ask(SysStatus::kId, 1);
   ask(LocalPositionNed::kId, 10);
   ask(AttitudeQuaternion::kId, 10);
 }
@@ -187,7 +190,7 @@ void MavlinkVehicle::ask_for_setpoint_mode() {
   const std::uint32_t number = options_.firmware == Firmware::px4 ? mode >> 16 & 0xff : mode;
   add_command(Cmd::do_set_mode, {kCustomMode, static_cast<float>(number), 0, 0, 0, 0, 0},
               [this](CmdResult result) {
-                if (result != CmdResult::accepted) hand_over_.on_refused(text_of(result), now());
+                if (result != CmdResult::accepted) hand_over_.on_refused(text_of(result));
               });
 }
 
@@ -260,6 +263,7 @@ std::vector<core::VehicleCheck> MavlinkVehicle::checks() const {
   constexpr double kMaxLoss_percent = 5;
   add("messages lost", "at most 5 %", received > 0 ? text("%.1f %%", lost_percent) : "",
       received > 0 && lost_percent <= kMaxLoss_percent);
+  for (core::VehicleCheck& check : health_checks(telemetry_.system())) all.push_back(std::move(check));
   // The core's state comes with its commands: a preflight, which gives none, has nothing to compare with.
   if (!commanded_) return all;
   // Frames or an origin that differ are flown into the rock.

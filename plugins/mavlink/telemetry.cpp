@@ -113,6 +113,9 @@ void Telemetry::take(const Frame& frame, const ClockSync& clock, TimeNs now, cor
       return;
     case BatteryStatus::kId:
       return take_battery(frame.as<BatteryStatus>(), now, sink);
+    case SysStatus::kId:
+      system_ = frame.as<SysStatus>();
+      return;
     case ExtendedSysState::kId:
       return take_landed(frame.as<ExtendedSysState>(), now, sink);
     case LocalPositionNed::kId: {

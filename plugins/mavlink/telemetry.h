@@ -26,6 +26,8 @@ class Telemetry {
   /// The autopilot's own position and attitude, world frame.
   const std::optional<core::Vec3>& position() const { return position_; }
   const std::optional<core::Quat>& orientation() const { return orientation_; }
+  /// The newest; nothing before the first.
+  const std::optional<SysStatus>& system() const { return system_; }
 
  private:
   /// In our clock, and never in the future; nothing if it is not newer than the last sample.
@@ -47,6 +49,7 @@ class Telemetry {
   bool standing_ = true, landed_known_ = false;
   std::optional<core::Vec3> position_;
   std::optional<core::Quat> orientation_;
+  std::optional<SysStatus> system_;
 };
 
 /// Height above where the pressure was `first_hpa`, in the troposphere of the standard atmosphere (ISO 2533).

@@ -7,6 +7,7 @@
 
 #include "core_stack/common/error.h"
 #include "plugins/mavlink/parameters.h"
+#include "plugins/mavlink/sensor_health.h"
 #include "plugins/mavlink/setpoints.h"
 
 namespace karst::sim {
@@ -63,6 +64,26 @@ std::map<std::string, double> parameters_of(const AutopilotFirmwareOptions& o, d
   return p;
 }
 
+constexpr std::uint32_t kAllSensors = [] {
+  std::uint32_t all = mavlink::kTransmitter.bit;
+  for (const mavlink::SensorBit& sensor : mavlink::kSensorBits) all |= sensor.bit;
+  return all;
+}();
+
+/// Bits of SYS_STATUS.
+std::uint32_t healthy_sensors(const AutopilotFirmwareOptions& o) {
+  std::uint32_t healthy = kAllSensors;
+  std::istringstream names(o.unhealthy);
+  for (std::string name; names >> name;) {
+    const auto* const sensor = std::find_if(mavlink::kSensorBits.begin(), mavlink::kSensorBits.end(),
+                                            [&name](const mavlink::SensorBit& s) { return s.name == name; });
+    if (sensor == mavlink::kSensorBits.end() && name != mavlink::kTransmitter.name)
+      throw core::InputError("simulated_autopilot.unhealthy", name, "is no sensor that an autopilot reports");
+    healthy &= ~(sensor == mavlink::kSensorBits.end() ? mavlink::kTransmitter : *sensor).bit;
+  }
+  return healthy;
+}
+
 /// Whether PX4 holds it as a float; the others are integers.
 bool is_real(const std::string& name) { return name.starts_with("MPC_") || name == "COM_OF_LOSS_T"; }
 
@@ -74,14 +95,14 @@ Autopilot::Autopilot(const AutopilotFirmwareOptions& o, const AutopilotBody& bod
       body_(body),
       script_(read_pilot_script(o.pilot)),
       parameters_(parameters_of(o, body.hover_thrust)),
+      healthy_sensors_(healthy_sensors(o)),
       connection_(std::move(link), kAutopilot, kComputer),
       modes_(o),
       control_(body.hover_thrust),
       pilot_(script_.cbegin()) {
   periods_ = {{mavlink::Heartbeat::kId, kSecond},
               {mavlink::Timesync::kId, kSecond / 10},
-              {mavlink::SysStatus::kId, kSecond},
-              {mavlink::RcChannels::kId, kSecond}};
+              {mavlink::SysStatus::kId, kSecond}};
 }
 
 TimeNs Autopilot::own_time(TimeNs time) const {
@@ -424,15 +445,11 @@ void Autopilot::report_system() {
   }
   if (due(mavlink::SysStatus::kId)) {
     mavlink::SysStatus m;
+    m.onboard_control_sensors_present = m.onboard_control_sensors_enabled = kAllSensors;
+    m.onboard_control_sensors_health = healthy_sensors_;
     m.voltage_battery = static_cast<std::uint16_t>(std::lround(1000 * volts));
     m.current_battery = centiamps;
     m.battery_remaining = percent;
-    connection_.send(m);
-  }
-  if (due(mavlink::RcChannels::kId)) {
-    mavlink::RcChannels m;
-    m.chancount = 8;
-    m.rssi = 200;
     connection_.send(m);
   }
 }

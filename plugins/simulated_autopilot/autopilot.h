@@ -67,6 +67,7 @@ class Autopilot {
   AutopilotBody body_;
   std::vector<PilotStep> script_;
   std::map<std::string, double> parameters_;
+  std::uint32_t healthy_sensors_;
   mavlink::Connection connection_;
   mavlink::ClockSync clock_;  // of the computer that karst runs on, in this clock
   Observer observer_;

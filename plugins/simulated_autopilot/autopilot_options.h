@@ -23,6 +23,7 @@ struct AutopilotFirmwareOptions {
   double battery_failsafe = 0;  // fraction at which it lands
   double clock_offset_s = 1234.5, clock_drift_ppm = 20;
   bool other_system = false;    // another vehicle speaks on the link
+  std::string unhealthy = {};   // names of its sensors, "gyroscope transmitter"
   std::string parameters = {};  // "NAME=VALUE NAME=VALUE": that differ from what should be
 };
 void describe(core::OptionTable& t, AutopilotFirmwareOptions& o);

@@ -30,6 +30,9 @@ void describe(core::OptionTable& t, AutopilotFirmwareOptions& o) {
   t.add("clock_offset", o.clock_offset_s, "s", -1e6, 1e6, "of the autopilot's clock against the core's");
   t.add("clock_drift_ppm", o.clock_drift_ppm, "", -500, 500, "how much faster its clock runs, in 1e-6");
   t.add("other_system", o.other_system, "another vehicle, with another number, speaks on the link as well");
+  t.add("unhealthy", o.unhealthy, {},
+        "which of its sensors it says are unhealthy, with spaces between: gyroscope, accelerometer, "
+        "magnetometer, barometer, battery, transmitter");
   t.add("parameters", o.parameters, {},
         "\"NAME=VALUE NAME=VALUE\": parameters that are not as they should be");
 }

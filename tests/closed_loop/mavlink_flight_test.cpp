@@ -237,6 +237,7 @@ TEST(MavlinkChecks, NameWhatDoesNotHold) {
       if (!right)
         o.autopilot.parameters =
             firmware == Firmware::px4 ? "COM_OF_LOSS_T=5 EKF2_EV_CTRL=0" : "FS_GCS_ENABLE=1";
+      if (!right && firmware == Firmware::ardupilot) o.autopilot.unhealthy = "magnetometer transmitter";
       Texts failed;
       fly(
           std::string("checks_") + name_of(firmware), o,
@@ -253,7 +254,8 @@ TEST(MavlinkChecks, NameWhatDoesNotHold) {
       else if (firmware == Firmware::px4)
         EXPECT_EQ(failed, (Texts{"COM_OF_LOSS_T 5", "EKF2_EV_CTRL 0"}));
       else
-        EXPECT_EQ(failed, Texts{"FS_GCS_ENABLE 1"});
+        EXPECT_EQ(failed, (Texts{"FS_GCS_ENABLE 1", "sensors' health unhealthy: magnetometer",
+                                 "transmitter not heard"}));
     }
 }
 

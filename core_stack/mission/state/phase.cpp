@@ -25,6 +25,7 @@ constexpr std::array kTransitions{
                "the core steers again, and its cameras have not looked around yet"},
     Transition{Phase::manual, Phase::explore, "the core steers again, and had not turned back"},
     Transition{Phase::manual, Phase::home, "the core steers again, and had turned back"},
+    Transition{Phase::manual, Phase::land, "the core steers again, above where it was landing"},
     Transition{{}, Phase::land, "the safety supervisor, an error or the operator ends the flight"},
     Transition{{}, Phase::done, "it stands, or is lost"},
 };

@@ -1,5 +1,5 @@
 // Opens the link that an address names:
-//   udp:14540                  waits there for the autopilot, and answers whoever sent the first datagram
+//   udp:14540                  waits there for the autopilot, and answers who sends MAVLink first
 //   udp:192.168.4.1:14550      sends there, and hears from there only
 //   serial:/dev/ttyACM0:921600 a serial line and its baud rate
 #pragma once

@@ -33,27 +33,32 @@ speed_t speed_of(const std::string& device, unsigned baud) {
   throw core::InputError(device, std::to_string(baud), "is no baud rate known here; there is:" + known);
 }
 
-}  // namespace
-
-SerialLink::SerialLink(const std::string& device, unsigned baud)
-    : line_(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
+/// Throws InputError.
+FileDescriptor open_line(const std::string& device, unsigned baud) {
   const auto refuse = [&device] { throw core::InputError(device, "", std::strerror(errno)); };
-  if (line_.get() < 0) refuse();
+  FileDescriptor line(::open(device.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (line.get() < 0) refuse();
   const speed_t speed = speed_of(device, baud);
   termios settings{};
-  if (::tcgetattr(line_.get(), &settings) != 0) refuse();
+  if (::tcgetattr(line.get(), &settings) != 0) refuse();
   ::cfmakeraw(&settings);
   settings.c_cflag |= CLOCAL | CREAD;
   settings.c_cflag &= ~static_cast<tcflag_t>(CSTOPB | CRTSCTS);
   ::cfsetispeed(&settings, speed);
   ::cfsetospeed(&settings, speed);
-  if (::tcsetattr(line_.get(), TCSANOW, &settings) != 0) refuse();
-  ::tcflush(line_.get(), TCIOFLUSH);
+  if (::tcsetattr(line.get(), TCSANOW, &settings) != 0) refuse();
+  ::tcflush(line.get(), TCIOFLUSH);
+  return line;
 }
 
+}  // namespace
+
+SerialLink::SerialLink(const std::string& device, unsigned baud)
+    : device_(device), baud_(baud), line_(open_line(device, baud)) {}
+
 void SerialLink::send(std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(line_.get(), bytes.data(), bytes.size());
+  while (line_ && !bytes.empty()) {
+    const ssize_t n = ::write(line_->get(), bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return;  // the rest is lost, and the receiver finds the next frame
     bytes = bytes.subspan(static_cast<std::size_t>(n));
@@ -61,11 +66,18 @@ void SerialLink::send(std::span<const std::uint8_t> bytes) {
 }
 
 void SerialLink::receive(std::vector<std::uint8_t>& into) {
+  if (!line_) try {
+      line_.emplace(open_line(device_, baud_));
+    } catch (const core::InputError&) {
+      return;  // not back yet
+    }
   std::array<std::uint8_t, 4096> bytes;
-  for (;;) {
-    const ssize_t n = ::read(line_.get(), bytes.data(), bytes.size());
+  constexpr int kMost = 16;  // in one step: a flood must not hold up the loop
+  for (int i = 0; i < kMost; ++i) {
+    const ssize_t n = ::read(line_->get(), bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return;
+    if (n < 0 && errno == EAGAIN) return;
+    if (n <= 0) return line_.reset();  // unplugged
     into.insert(into.end(), bytes.begin(), bytes.begin() + n);
   }
 }

@@ -1,5 +1,6 @@
 // MAVLink by a serial line: eight bits, no parity, one stop bit, no flow control.
 #pragma once
+#include <optional>
 #include <string>
 
 #include "plugins/mavlink/link/byte_link.h"
@@ -13,10 +14,13 @@ class SerialLink final : public ByteLink {
   SerialLink(const std::string& device, unsigned baud);
 
   void send(std::span<const std::uint8_t> bytes) override;
+  /// Opens the line again if it was unplugged and is back.
   void receive(std::vector<std::uint8_t>& into) override;
 
  private:
-  FileDescriptor line_;
+  std::string device_;
+  unsigned baud_;
+  std::optional<FileDescriptor> line_;  // nothing while it is unplugged
 };
 
 }  // namespace karst::mavlink

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "core_stack/common/error.h"
+#include "plugins/mavlink/wire/frame.h"
 
 namespace karst::mavlink {
 namespace {
@@ -18,12 +19,21 @@ FileDescriptor open_socket(const std::string& address) {
   return socket;
 }
 
+/// A peer that has been silent for so long is gone: its program was started anew at another port.
+constexpr std::chrono::seconds kGone{3};
+
+bool holds_frame(std::span<const std::uint8_t> datagram) {
+  FrameParser parser;
+  parser.add(datagram);
+  return parser.next().has_value();
+}
+
 const sockaddr* generic(const sockaddr_in& a) { return reinterpret_cast<const sockaddr*>(&a); }
 
 }  // namespace
 
 UdpLink::UdpLink(FileDescriptor socket, std::optional<sockaddr_in> peer)
-    : socket_(std::move(socket)), peer_(peer) {}
+    : socket_(std::move(socket)), waits_(!peer), peer_(peer) {}
 
 UdpLink UdpLink::wait_at(std::uint16_t port) {
   const std::string address = "udp:" + std::to_string(port);
@@ -62,8 +72,13 @@ void UdpLink::receive(std::vector<std::uint8_t>& into) {
                                  reinterpret_cast<sockaddr*>(&from), &size);
     if (n < 0 && errno == ECONNREFUSED) continue;  // nobody is there yet
     if (n < 0) return;
-    if (!peer_) peer_ = from;
-    if (from.sin_addr.s_addr != peer_->sin_addr.s_addr || from.sin_port != peer_->sin_port) continue;
+    const auto now = Clock::now();
+    const bool may_choose = !peer_ || (waits_ && now - heard_at_ > kGone);
+    const std::span<const std::uint8_t> bytes(datagram.data(), static_cast<std::size_t>(n));
+    if (may_choose && holds_frame(bytes)) peer_ = from;
+    if (!peer_ || from.sin_addr.s_addr != peer_->sin_addr.s_addr || from.sin_port != peer_->sin_port)
+      continue;
+    heard_at_ = now;
     into.insert(into.end(), datagram.begin(), datagram.begin() + n);
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <netinet/in.h>
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -12,7 +13,8 @@ namespace karst::mavlink {
 
 class UdpLink final : public ByteLink {
  public:
-  /// Waits at `port` for a peer, and keeps to the first. Throws InputError.
+  /// Waits at `port` for a peer: the first that sends a MAVLink frame, until it has been silent for 3 s.
+  /// Throws InputError.
   static UdpLink wait_at(std::uint16_t port);
   /// Throws InputError if `host` is no IPv4 address, such as 192.168.4.1.
   static UdpLink to(const std::string& host, std::uint16_t port);
@@ -25,8 +27,12 @@ class UdpLink final : public ByteLink {
  private:
   UdpLink(FileDescriptor socket, std::optional<sockaddr_in> peer);
 
+  using Clock = std::chrono::steady_clock;
+
   FileDescriptor socket_;
+  bool waits_;  // for a peer that it does not know
   std::optional<sockaddr_in> peer_;
+  Clock::time_point heard_at_;  // from the peer
 };
 
 }  // namespace karst::mavlink

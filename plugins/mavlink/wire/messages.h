@@ -158,33 +158,6 @@ struct LocalPositionNed {
 };
 static_assert(crc_extra<LocalPositionNed>() == 185);
 
-/// The pilot's sticks, microseconds.
-struct RcChannels {
-  static constexpr std::uint32_t kId = 65;
-  static constexpr std::string_view kName = "RC_CHANNELS";
-  std::uint32_t time_boot_ms = 0;
-  std::uint16_t chan1_raw = 0, chan2_raw = 0, chan3_raw = 0, chan4_raw = 0, chan5_raw = 0, chan6_raw = 0,
-                chan7_raw = 0, chan8_raw = 0, chan9_raw = 0, chan10_raw = 0, chan11_raw = 0, chan12_raw = 0,
-                chan13_raw = 0, chan14_raw = 0, chan15_raw = 0, chan16_raw = 0, chan17_raw = 0,
-                chan18_raw = 0;
-  std::uint8_t chancount = 0, rssi = 0;
-  static constexpr auto fields() {
-    return std::tuple(
-        field("time_boot_ms", &RcChannels::time_boot_ms), field("chan1_raw", &RcChannels::chan1_raw),
-        field("chan2_raw", &RcChannels::chan2_raw), field("chan3_raw", &RcChannels::chan3_raw),
-        field("chan4_raw", &RcChannels::chan4_raw), field("chan5_raw", &RcChannels::chan5_raw),
-        field("chan6_raw", &RcChannels::chan6_raw), field("chan7_raw", &RcChannels::chan7_raw),
-        field("chan8_raw", &RcChannels::chan8_raw), field("chan9_raw", &RcChannels::chan9_raw),
-        field("chan10_raw", &RcChannels::chan10_raw), field("chan11_raw", &RcChannels::chan11_raw),
-        field("chan12_raw", &RcChannels::chan12_raw), field("chan13_raw", &RcChannels::chan13_raw),
-        field("chan14_raw", &RcChannels::chan14_raw), field("chan15_raw", &RcChannels::chan15_raw),
-        field("chan16_raw", &RcChannels::chan16_raw), field("chan17_raw", &RcChannels::chan17_raw),
-        field("chan18_raw", &RcChannels::chan18_raw), field("chancount", &RcChannels::chancount),
-        field("rssi", &RcChannels::rssi));
-  }
-};
-static_assert(crc_extra<RcChannels>() == 118);
-
 /// A command with seven parameters.
 struct CommandLong {
   static constexpr std::uint32_t kId = 76;
@@ -393,9 +366,9 @@ struct Odometry {
 };
 static_assert(crc_extra<Odometry>() == 91);
 
-using AllMessages = std::tuple<Heartbeat, SysStatus, ParamRequestRead, ParamValue, RawImu, ScaledPressure,
-                               AttitudeQuaternion, LocalPositionNed, RcChannels, CommandLong, CommandAck,
-                               SetAttitudeTarget, SetPositionTargetLocalNed, HighresImu, Timesync,
-                               BatteryStatus, ExtendedSysState, Statustext, Odometry>;
+using AllMessages =
+    std::tuple<Heartbeat, SysStatus, ParamRequestRead, ParamValue, RawImu, ScaledPressure, AttitudeQuaternion,
+               LocalPositionNed, CommandLong, CommandAck, SetAttitudeTarget, SetPositionTargetLocalNed,
+               HighresImu, Timesync, BatteryStatus, ExtendedSysState, Statustext, Odometry>;
 
 }  // namespace karst::mavlink

@@ -347,9 +347,9 @@ std::vector<Check> checks_of(const VehicleMeasurements& m) {
     judge.add(Part::vehicle, "stands", "it left the ground", "on the pad", Outcome::no_go,
               "disarm it, take off its props, and find out who armed it");
   for (const core::VehicleCheck& c : m.checks)
-    judge.add(
-        Part::link, c.name, c.found.empty() ? "no answer" : c.found, c.required, no_go_if(!c.holds),
-        c.found.empty() ? "the autopilot did not answer: see the link" : "set it, and restart the autopilot");
+    judge.add(Part::link, c.name, c.found.empty() ? "no answer" : c.found, c.required, no_go_if(!c.holds),
+              c.found.empty() ? "the autopilot did not answer: see the link"
+                              : "mend it on the autopilot, and restart it");
   for (const SensorTimeline& s : m.sensors) judge_timeline(s, m.clock, judge);
   judge_imu(m, judge);
   if (m.lidar) judge_lidar(*m.lidar, judge);

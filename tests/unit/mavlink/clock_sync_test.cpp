@@ -35,7 +35,7 @@ TEST(ClockSync, FollowsAClockThatDriftsAndOneThatWasSet) {
   TimeNs t = 0;
   for (; t < 60 * kSecond; t += kSecond / 10) ask(t, t / 10000);  // 100 ppm
   EXPECT_LT(std::abs(sync.offset() - t / 10000), kMillisecond);
-  for (const TimeNs end = t + 6 * kSecond; t < end; t += kSecond / 10) ask(t, -5 * kSecond);
+  ask(t, -5 * kSecond);
   EXPECT_LT(std::abs(sync.offset() + 5 * kSecond), kMillisecond);
 }
 

@@ -71,7 +71,7 @@ TEST(HandOver, KarstAsksOnTheGroundOnceArmedAndNotInTheAir) {
   s.base = kCustomMode | kArmed;
   s.pass(3);
   EXPECT_GE(s.asked, 2) << "once a second until it is granted";
-  s.hand_over.on_refused("denied", s.now);
+  s.hand_over.on_refused("denied");
   EXPECT_EQ(s.pass(0.2).reason, "mode offboard refused: denied");
   s.fly();
   s.asked = 0;

@@ -4,7 +4,10 @@
 #include <stdlib.h>
 
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <thread>
 
 #include "core_stack/common/error.h"
 #include "plugins/mavlink/command_queue.h"
@@ -14,6 +17,7 @@
 #include "plugins/mavlink/link/serial_link.h"
 #include "plugins/mavlink/link/udp_link.h"
 #include "plugins/mavlink/parameters.h"
+#include "plugins/mavlink/sensor_health.h"
 #include "plugins/mavlink/telemetry.h"
 
 namespace karst::mavlink {
@@ -227,6 +231,22 @@ TEST_F(TelemetryTest, GroundIsToldOnceAndTheBatteryByWhatFlyingTakes) {
   EXPECT_EQ(heard.battery.size(), 1u) << "not known";
 }
 
+TEST(SensorHealth, NamesWhatIsUsedAndUnhealthyAndAsksForTheTransmitter) {
+  EXPECT_EQ(health_checks(std::nullopt)[0].found, "");
+  SysStatus m;
+  m.onboard_control_sensors_enabled = 0x1 | 0x2 | 0x8 | 0x10000 | 0x200000;
+  m.onboard_control_sensors_health = 0x2 | 0x10000;
+  auto checks = health_checks(m);
+  EXPECT_FALSE(checks[0].holds);
+  EXPECT_EQ(checks[0].found, "unhealthy: gyroscope, barometer") << "the magnetometer is not used";
+  EXPECT_TRUE(checks[1].holds);
+  m.onboard_control_sensors_health = 0x1 | 0x2 | 0x8;
+  checks = health_checks(m);
+  EXPECT_TRUE(checks[0].holds);
+  EXPECT_FALSE(checks[1].holds);
+  EXPECT_EQ(checks[1].found, "not heard");
+}
+
 TEST(HeldMessages, WaitForTheImuButNotForEver) {
   HeldMessages held;
   std::string out;
@@ -260,12 +280,13 @@ TEST(Link, ABadAddressIsAnErrorThatNamesIt) {
   EXPECT_NE(error_of("serial:/dev/null:12345").find("57600"), std::string::npos) << "the rates there are";
 }
 
-TEST(Link, UdpKeepsToItsFirstPeer) {
+TEST(Link, UdpKeepsToThePeerThatSpokeMavlinkFirst) {
   UdpLink waits = UdpLink::wait_at(0);
   UdpLink peer = UdpLink::to("127.0.0.1", waits.port()), stranger = UdpLink::to("127.0.0.1", waits.port());
   const auto bytes = to_wire(frame_of(Heartbeat{}, {1, 1}));
   std::vector<std::uint8_t> got;
   waits.send(bytes);  // to nobody yet
+  stranger.send(std::vector<std::uint8_t>(300, 0xfd));
   peer.send(bytes);
   waits.receive(got);
   EXPECT_EQ(got, bytes);
@@ -278,11 +299,64 @@ TEST(Link, UdpKeepsToItsFirstPeer) {
   EXPECT_EQ(got, bytes);
 }
 
-TEST(Link, ASerialLineCarriesAllBytesUnchanged) {
+TEST(Link, UdpTakesAPeerAtAnotherPortOnceTheFirstWasSilent) {
+  UdpLink waits = UdpLink::wait_at(0);
+  const auto bytes = to_wire(frame_of(Heartbeat{}, {1, 1}));
+  std::vector<std::uint8_t> got;
+  {
+    UdpLink first = UdpLink::to("127.0.0.1", waits.port());
+    first.send(bytes);
+    waits.receive(got);
+  }
+  UdpLink again = UdpLink::to("127.0.0.1", waits.port());
+  got.clear();
+  for (int i = 0; i < 100 && got.empty(); ++i) {
+    again.send(bytes);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    waits.receive(got);
+  }
+  EXPECT_FALSE(got.empty());
+  waits.send(bytes);
+  got.clear();
+  again.receive(got);
+  EXPECT_EQ(got, bytes);
+}
+
+/// The autopilot's end of a serial line.
+int open_master() {
   const int master = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
-  ASSERT_GE(master, 0);
-  ASSERT_EQ(::grantpt(master), 0);
-  ASSERT_EQ(::unlockpt(master), 0);
+  EXPECT_GE(master, 0);
+  EXPECT_EQ(::grantpt(master), 0);
+  EXPECT_EQ(::unlockpt(master), 0);
+  return master;
+}
+
+TEST(Link, ASerialLineThatWasUnpluggedIsOpenedAgain) {
+  const std::filesystem::path device = std::filesystem::path(testing::TempDir()) / "karst_replugged";
+  std::filesystem::remove(device);
+  int master = open_master();
+  std::filesystem::create_symlink(::ptsname(master), device);
+  SerialLink line(device, 921600);
+  const std::vector<std::uint8_t> sent{1, 2, 3};
+  std::vector<std::uint8_t> got;
+  ::close(master);
+  std::filesystem::remove(device);
+  line.receive(got);
+  line.send(sent);
+  line.receive(got);
+  EXPECT_TRUE(got.empty());
+  master = open_master();
+  std::filesystem::create_symlink(::ptsname(master), device);
+  line.receive(got);
+  ASSERT_EQ(::write(master, sent.data(), sent.size()), 3);
+  line.receive(got);
+  EXPECT_EQ(got, sent);
+  ::close(master);
+  std::filesystem::remove(device);
+}
+
+TEST(Link, ASerialLineCarriesAllBytesUnchanged) {
+  const int master = open_master();
   SerialLink line(::ptsname(master), 921600);
   std::vector<std::uint8_t> sent(256), got;
   for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = static_cast<std::uint8_t>(i);

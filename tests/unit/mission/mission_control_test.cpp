@@ -425,6 +425,27 @@ TEST_F(MissionControlTest, ThePilotTakesOverAndGivesBackWhileExploringAndOnTheWa
   EXPECT_LT(farthest_off_m, 0.5) << "the reference stays with the vehicle";
 }
 
+// As it was: it set out for its hover first, sagged in the first moment, and the ground touched it as a
+// contact.
+TEST_F(MissionControlTest, TakenFromTheCoreJustAboveTheGroundItLandsOn) {
+  TimeNs taken = 0;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    const TimeNs now = executive.now();
+    if (taken == 0 && mission.phase() == Phase::land && vehicle.velocity_mps().z() < -0.2) {
+      taken = now;
+      mission.on_authority(now, Authority::autopilot, "no heartbeat");
+    }
+    if (taken == now) return;
+    if (taken == 0 || mission.phase() != Phase::manual) return;
+    vehicle.pilot_rates = hold(vehicle);
+    if (now - taken < 5 * kSecond) return;
+    vehicle.pilot_rates.reset();
+    mission.on_authority(now, Authority::core, "mode guided");
+  });
+  EXPECT_EQ(result.outcome, MissionOutcome::landed) << result.reason;
+  EXPECT_EQ(phases(), (Texts{"standby", "takeoff", "explore", "home", "land", "manual", "land", "done"}));
+}
+
 TEST_F(MissionControlTest, ThePilotTakesOffSetsItDownTakesOffAgainAndHandsOverInTheAir) {
   vehicle.steered_by(Authority::pilot);
   const auto flies = [&](double climb_mps) {
