@@ -15,6 +15,7 @@ constexpr double kHeld = 1;                          // s: the longest time for 
 constexpr int kRefinements = 2;                      // of a sweep's motion if there is no prediction
 constexpr double kSameMotion = 0.01;                 // m: if the motion changes less, the sweep is kept
 constexpr double kRockDistance = 5;                  // m: range at which the effect of a rotation is measured
+constexpr double kNearlyAll = 0.7;                   // of a sweep's features on the map
 constexpr double kLongGap = 0.5;                     // s without a pose, after which a prediction is weak
 
 bool is_measurement(const SweepPoint& p) {
@@ -153,6 +154,16 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
     if (with_last.good) guess = with_last.T_world_body;
   }
   Fit found = fit(map_, guess, weak ? coarsest : 0);
+  // What nobody saw may have been flown as predicted; or the vehicle stopped, and nearly all is where it was.
+  Pose expected = prediction.T_world_body;
+  if (since_s > kLongGap) {
+    const Fit stayed = fit(map_, T_world_last_, coarsest);
+    if (stayed.good &&
+        stayed.matched_fraction > std::max(kNearlyAll, found.good ? found.matched_fraction : 0)) {
+      found = stayed;
+      expected = T_world_last_;
+    }
+  }
   // Without a prediction the last velocity compensated the sweep. The fit gives a better one: refine.
   const int refinements = prediction.covered || since_s <= 0 ? 0 : first_is_bent_ ? 1 : kRefinements;
   Twist assumed = prediction.twist;
@@ -169,7 +180,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
   out.rms_residual_m = found.rms_residual_m;
   out.covariance = found.covariance;
   out.free_directions = found.free_directions;
-  const Pose correction = prediction.T_world_body.inverse() * found.T_world_body;
+  const Pose correction = expected.inverse() * found.T_world_body;
   const bool far = correction.position.norm() > options_.max_correction_m ||
                    log_so3(correction.orientation).norm() > options_.max_correction_rad;
   if (!found.good) {

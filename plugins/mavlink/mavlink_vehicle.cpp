@@ -215,7 +215,7 @@ void MavlinkVehicle::command(const core::Command& c) {
     flown_ = landed_ = false;
   }
   const bool waits_for_take_off = options_.firmware == Firmware::ardupilot &&
-                                  options_.control == Control::position && telemetry_.standing();
+                                  options_.control == Control::position && !telemetry_.airborne();
   if (waits_for_take_off || !due(target_at_, options_.setpoint_rate_hz)) return;
   if (!setpoint_at_ || now() - *setpoint_at_ > kStreamBroken) streams_since_ = now();
   setpoint_at_ = now();
@@ -230,9 +230,9 @@ void MavlinkVehicle::command(const core::Command& c) {
 
 /// ArduPilot follows positions in the air only, and takes off by a command.
 void MavlinkVehicle::lift_off(const core::Command& c) {
-  constexpr double kRises_mps = 0.05;
+  constexpr double kAbove_m = 0.1;  // the command, or what the autopilot made of it, may have been lost
   if (options_.firmware != Firmware::ardupilot || options_.control != Control::position ||
-      !telemetry_.standing() || c.reference.velocity_mps.z() < kRises_mps ||
+      !telemetry_.standing() || c.reference.position.z() < c.state.position.z() + kAbove_m ||
       commands_.waits_for(Cmd::nav_takeoff) || !due(take_off_at_, kTakeOffAgain_hz))
     return;
   add_command(Cmd::nav_takeoff, {0, 0, 0, 0, 0, 0, static_cast<float>(climb_m_)});

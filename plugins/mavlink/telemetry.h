@@ -22,6 +22,7 @@ class Telemetry {
   std::uint64_t imu_samples() const { return imu_samples_; }
   /// As the autopilot says; false before it has said anything.
   bool standing() const { return landed_known_ && standing_; }
+  bool airborne() const { return landed_known_ && !standing_; }
   bool landed_known() const { return landed_known_; }
   /// The autopilot's own position and attitude, world frame.
   const std::optional<core::Vec3>& position() const { return position_; }

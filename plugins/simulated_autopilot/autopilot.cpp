@@ -288,7 +288,8 @@ RateTarget Autopilot::control(double dt_s) {
     flown_ = modes_.mode();
     return {};
   }
-  const bool stops = modes_.target_timed_out() && !timed_out_;
+  // A take-off is a command of its own: no target is awaited during it.
+  const bool stops = modes_.target_timed_out() && !timed_out_ && !takes_off_;
   timed_out_ = modes_.target_timed_out();
   if (flown_ != modes_.mode() || stops) {
     flown_ = modes_.mode();

@@ -22,6 +22,8 @@ namespace {
 
 constexpr TimeNs kTick = 5 * kMillisecond;  // also the period of the IMU
 constexpr int kStepsPerTick = 5;
+/// Without a command for so long the autopilot no longer holds the rates of the last one.
+constexpr TimeNs kRatesTimeout = 100 * kMillisecond;
 constexpr TimeNs kBarometerPeriod = 40 * kMillisecond;
 /// In real time, when ray casting or drawing falls behind: measurements beyond this are not taken. In
 /// lockstep fewer wait.
@@ -171,23 +173,27 @@ void SimulatedVehicle::command(const core::Command& c) {
   if (c.state_is_known) velocity_error_mps_ = c.state.velocity_mps - quadrotor_.state().velocity_mps;
 }
 
-/// The autopilot takes over; a vehicle that stands switches its motors off. For five seconds it knows its
-/// velocity by dead reckoning from the last estimate that it was told, as PX4 does (EKF2_NOAID_TOUT): with
-/// the estimate's error, and none of its own.
+/// The autopilot takes over: it brakes first, and then comes down. Rates that are held for longer would tip
+/// it over. A vehicle that stands switches its motors off. For five seconds it knows its velocity by dead
+/// reckoning from the last estimate that it was told, as PX4 does (EKF2_NOAID_TOUT): with the estimate's
+/// error, and none of its own.
 void SimulatedVehicle::take_over() {
   if (!std::exchange(taken_over_, true))
-    log_.event(now(), "autopilot", quadrotor_.state(), "no command: level, and down");
+    log_.event(now(), "autopilot", quadrotor_.state(), "no command: brakes, then down");
   constexpr TimeNs kDeadReckoning = 5 * core::kSecond;
+  constexpr double kSink_mps = 0.5;
+  const TimeNs silence = now() - commanded_at_;
   std::optional<Vec3> velocity;
-  if (velocity_error_mps_ && now() - commanded_at_ < kDeadReckoning)
+  if (velocity_error_mps_ && silence < kDeadReckoning)
     velocity = quadrotor_.state().velocity_mps + *velocity_error_mps_;
   quadrotor_.command = quadrotor_.footing() == Footing::standing
                            ? core::AttitudeRateCommand{}
-                           : level_descent(quadrotor_.state(), options_.body.total_weight_n(), velocity);
+                           : level_descent(quadrotor_.state(), options_.body.total_weight_n(), velocity,
+                                           silence > core::kCommandTimeout ? kSink_mps : 0);
 }
 
 void SimulatedVehicle::tick() {
-  if (quadrotor_.command.armed && now() - commanded_at_ > core::kCommandTimeout) take_over();
+  if (quadrotor_.command.armed && now() - commanded_at_ > kRatesTimeout) take_over();
   quadrotor_.gyroscope_bias_radps = imu_.gyroscope_bias_radps();
   for (int left = kStepsPerTick; left > 0 && !lost_; left -= quadrotor_.steps_done())
     react(quadrotor_.advance(left));

@@ -9,7 +9,7 @@ using namespace karst;
 
 struct SocketOptions {
   std::string address;
-  double connect_timeout_s = 30, answer_timeout_s = 60, silence_s = 1, lost_after_s = 10;
+  double connect_timeout_s = 30, answer_timeout_s = 60, silence_s = 0.5, lost_after_s = 10;
 };
 
 socket::Wait wait_of(double seconds) { return socket::Wait(static_cast<socket::Wait::rep>(1000 * seconds)); }

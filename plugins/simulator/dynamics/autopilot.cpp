@@ -26,8 +26,8 @@ Wrench rate_control(const AutopilotOptions& o, const BodyModel& body,
 }
 
 core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n,
-                                        const std::optional<Vec3>& velocity_mps) {
-  constexpr double kSink_mps = 0.5, kLevelling_1ps = 6, kClimbRateGain_1ps = 3;
+                                        const std::optional<Vec3>& velocity_mps, double sink_mps) {
+  constexpr double kLevelling_1ps = 6, kClimbRateGain_1ps = 3;
   constexpr double kBraking_1ps = 1.5, kMaxBraking_mps2 = 2;
   const core::Quat to_body = s.T_world_body.orientation.conjugate();
   const Vec3 up_body = to_body * Vec3::UnitZ();
@@ -36,7 +36,7 @@ core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n,
     const Vec3 braking = -kBraking_1ps * Vec3(velocity_mps->x(), velocity_mps->y(), 0);
     thrust_world += braking * std::min(1.0, kMaxBraking_mps2 / std::max(braking.norm(), 1e-9));
   }
-  const double force = 1 + kClimbRateGain_1ps * (-kSink_mps - s.velocity_mps.z()) / kGravity_mps2;
+  const double force = 1 + kClimbRateGain_1ps * (-sink_mps - s.velocity_mps.z()) / kGravity_mps2;
   core::AttitudeRateCommand out;
   out.body_rate_radps = kLevelling_1ps * Vec3::UnitZ().cross(to_body * thrust_world.normalized());
   out.thrust_n = weight_n * std::clamp(force, 0.3, 1.5) / std::clamp(up_body.z(), 0.5, 1.0);

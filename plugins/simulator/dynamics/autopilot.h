@@ -20,10 +20,10 @@ void describe(core::OptionTable& t, AutopilotOptions& o);
 Wrench rate_control(const AutopilotOptions& o, const BodyModel& body,
                     const core::AttitudeRateCommand& command, const core::Vec3& measured_rate_radps);
 
-/// The autopilot's command when no more commands come: it levels the vehicle and descends at 0.5 m/s. With a
+/// The autopilot's command when no more commands come: it levels the vehicle and sinks at `sink_mps`. With a
 /// horizontal velocity (world frame) it brakes by up to 2 m/s^2; without one, or a position, the vehicle
 /// drifts. It uses its own attitude and climb rate, and the hover thrust `weight_n` that it has learned.
 core::AttitudeRateCommand level_descent(const BodyState& s, double weight_n,
-                                        const std::optional<core::Vec3>& velocity_mps = {});
+                                        const std::optional<core::Vec3>& velocity_mps, double sink_mps);
 
 }  // namespace karst::sim

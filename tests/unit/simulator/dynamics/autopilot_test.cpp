@@ -20,8 +20,8 @@ BodyState descended(double duration_s, bool knows_velocity) {
   s.velocity_mps = {1.8, 0, 0};
   MotorThrusts f = MotorThrusts::Constant(body.weight_n() / 4);
   for (double t = 0; t < duration_s; t += 0.001) {
-    const auto command =
-        sim::level_descent(s, body.weight_n(), knows_velocity ? std::optional(s.velocity_mps) : std::nullopt);
+    const auto command = sim::level_descent(
+        s, body.weight_n(), knows_velocity ? std::optional(s.velocity_mps) : std::nullopt, 0.5);
     const sim::Wrench w = sim::rate_control({}, body, command, s.body_rate_radps);
     f = sim::follow(motors, f, sim::mix(motors, sim::max_motor_thrust_n(motors, body), w), 0.001);
     s = sim::advance(body, s, sim::wrench_of(motors, f), Vec3::Zero(), 0.001);
