@@ -21,6 +21,8 @@ constexpr double kCompassTrusted_s = 2;
 constexpr double kHeightKnown_m = 0.03;
 /// Headings and heights are applied at the current time: samples older than this are not used.
 constexpr TimeNs kStale = 200 * kMillisecond;
+/// Between two samples of an IMU of 100 Hz or more, of which one may be lost.
+constexpr TimeNs kNoneMissing = 25 * kMillisecond;
 /// Factor on the noise of samples predicted from the commands. They include neither the wind (0.75 m/s^2 by
 /// drag in a gust of 5 m/s) nor the lag of the rates behind the command (0.25 rad/s while a turn begins), and
 /// both persist from one pose to the next: 0.07 m/s and 0.025 rad in 0.1 s, which this noise covers with 0.2
@@ -80,12 +82,14 @@ void Estimator::on_imu(const ImuSample& imu) {
     last_bad_input_ = imu.stamp;
     return;
   }
-  last_imu_ = std::max(last_imu_, imu.stamp);  // the IMU delivers data, even if a predicted sample is newer
-  if (!lidar_.started()) {
-    last_pose_ = imu.stamp;
-  } else if (imu.stamp <= state().stamp) {
-    return;
+  if (lidar_.started() && imu.stamp <= last_imu_) return;
+  if (!lidar_.started()) last_pose_ = imu.stamp;
+  // Late, but none is missing: what another did meanwhile was measured, and is no guess.
+  if (guesses() && imu.stamp <= guessed_until_ && imu.stamp - last_imu_ <= kNoneMissing) {
+    guessed_until_ = imu.stamp;
+    poses_since_guess_ = kPosesThatTell;
   }
+  last_imu_ = imu.stamp;
   lidar_.on_imu(imu);
   magnetic_.on_imu(imu);
   if (newcomer_) newcomer_->on_imu(imu);

@@ -41,7 +41,7 @@ struct Diagnosis {
 class Estimator {
  public:
   Estimator(const EstimatorOptions& options, const Pose& T_world_start);
-  /// Ignores samples that are not finite or not newer than the last one.
+  /// Ignores samples that are not finite or not newer than the last one measured.
   void on_imu(const ImuSample& imu);
   /// While the IMU delivers no data: takes the measurement expected from the last command and the mass, or of
   /// a hover if another steers, who may do anything.
@@ -49,7 +49,7 @@ class Estimator {
   void bridge(const ImuSample& expected, Expected how = Expected::as_commanded);
   /// Another steered while the IMU was silent, and no two poses since then have told where it is and how
   /// fast.
-  bool guesses() const { return poses_since_guess_ < 2; }
+  bool guesses() const { return poses_since_guess_ < kPosesThatTell; }
   /// Ignores poses that are not finite, not newer than the last one, or older than a second.
   void on_pose(const PoseSample& pose);
   /// The same for a LiDAR pose with its covariance. Returns true if the pose was accepted.
@@ -85,7 +85,8 @@ class Estimator {
   TimeNs newest_pose_ = std::numeric_limits<TimeNs>::min();  // accepted or not
   TimeNs newest_mag_ = std::numeric_limits<TimeNs>::min(), newest_height_ = newest_mag_;
   TimeNs guessed_until_ = std::numeric_limits<TimeNs>::min();  // the newest sample bridged for another
-  int poses_since_guess_ = 2;                                  // accepted; or more
+  static constexpr int kPosesThatTell = 2;
+  int poses_since_guess_ = kPosesThatTell;  // accepted; or more
   TimeNs last_bad_input_ = std::numeric_limits<TimeNs>::min();
 };
 

@@ -90,6 +90,7 @@ void InertialFilter::note(const ImuSample& imu, double noise_scale) {
 }
 
 void InertialFilter::on_imu(const ImuSample& imu, double noise_scale) {
+  if (noise_scale <= 1) drop_predicted(imu.stamp);
   if (steps_.empty()) {
     state_.stamp = imu.stamp;
     state_.body_rate_radps = imu.body_rate_radps;
@@ -99,6 +100,17 @@ void InertialFilter::on_imu(const ImuSample& imu, double noise_scale) {
   }
   note(imu, noise_scale);
   while (steps_.front().imu.stamp < imu.stamp - kBuffer) steps_.pop_front();
+}
+
+/// Goes back to the last step before `since`, unless a measured one is newer or that step is gone.
+void InertialFilter::drop_predicted(TimeNs since) {
+  if (steps_.empty() || steps_.back().imu.stamp < since || steps_.front().imu.stamp >= since) return;
+  std::size_t kept = steps_.size();
+  for (; steps_[kept - 1].imu.stamp >= since; --kept)
+    if (steps_[kept - 1].noise_scale <= 1) return;
+  steps_.erase_end(steps_.size() - kept);
+  go_back_to(kept - 1);
+  for (const Scalar& measured : steps_.back().scalars) correct(measured);
 }
 
 /// Index of the last step that is not newer than `stamp`.

@@ -42,7 +42,8 @@ class InertialFilter {
  public:
   InertialFilter(const InertialNoise& noise, const Pose& T_world_start);
 
-  /// Ignores samples not newer than the last one. `noise_scale` is above 1 for predicted samples.
+  /// Ignores samples not newer than the last one. `noise_scale` is above 1 for predicted samples: a measured
+  /// one that comes late takes the place of those predicted for its time and later.
   void on_imu(const ImuSample& imu, double noise_scale = 1);
 
   enum class Verdict { accepted, gated, ignored };
@@ -83,6 +84,7 @@ class InertialFilter {
   void propagate(const ImuSample& before, const ImuSample& after, double noise_scale);
   void correct(const Scalar& measured);
   void inject(const Vector15& error);
+  void drop_predicted(TimeNs since);
   std::optional<std::size_t> step_at(TimeNs stamp) const;
   void go_back_to(std::size_t step);
   void replay_after(std::size_t step);

@@ -66,8 +66,8 @@ class VehicleSink {
   virtual void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) = 0;
 };
 
-/// A vehicle that has been given no command for so long levels itself and comes down by itself, as autopilots
-/// do: the core may hang, or its process may be gone.
+/// A vehicle that has been given no command for so long steers itself: it brakes, and comes down, as
+/// autopilots do. The core may hang, or its process may be gone.
 constexpr TimeNs kCommandTimeout = 500 * kMillisecond;
 
 class Vehicle {

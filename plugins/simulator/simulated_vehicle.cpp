@@ -182,6 +182,7 @@ void SimulatedVehicle::take_over() {
     log_.event(now(), "autopilot", quadrotor_.state(), "no command: brakes, then down");
   constexpr TimeNs kDeadReckoning = 5 * core::kSecond;
   constexpr double kSink_mps = 0.5;
+  constexpr TimeNs kHover = 3 * core::kSecond / 2;
   const TimeNs silence = now() - commanded_at_;
   std::optional<Vec3> velocity;
   if (velocity_error_mps_ && silence < kDeadReckoning)
@@ -189,7 +190,7 @@ void SimulatedVehicle::take_over() {
   quadrotor_.command = quadrotor_.footing() == Footing::standing
                            ? core::AttitudeRateCommand{}
                            : level_descent(quadrotor_.state(), options_.body.total_weight_n(), velocity,
-                                           silence > core::kCommandTimeout ? kSink_mps : 0);
+                                           silence > kHover ? kSink_mps : 0);
 }
 
 void SimulatedVehicle::tick() {

@@ -52,8 +52,7 @@ void RealTimeVehicle::step() {
   if (lost_) return;
   note_lost_time();
   if (late() > core::kCommandTimeout)
-    give_away("the core was " + in_seconds(core::kCommandTimeout) +
-              " late, so the vehicle comes down by itself");
+    give_away("the core was " + in_seconds(core::kCommandTimeout) + " late, so the vehicle steers itself");
   try {
     for (std::size_t read = 0; read < kMessagesAStep && !lost_;) {
       if (!next_) {
@@ -86,7 +85,7 @@ void RealTimeVehicle::note_lost_time() {
   offset_.forget();
   if (next_ && measured(*next_)) next_.reset();
   if (TimeNs* stamp = next_ ? stamp_of(*next_) : nullptr) *stamp = std::min(*stamp, now);
-  give_away("the core stood still for " + in_seconds(lost) + ", so the vehicle comes down by itself");
+  give_away("the core stood still for " + in_seconds(lost) + ", so the vehicle steers itself");
 }
 
 /// The message with its stamp by the core's clock, if the core is to take it. Until the offset is

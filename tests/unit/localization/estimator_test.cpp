@@ -209,6 +209,32 @@ TEST(Estimator, AfterASilenceInWhichAnotherSteeredTheBarometerDoesNotBecomeSpeed
   EXPECT_FALSE(e.guesses());
 }
 
+// As it was: the samples of the silence were dropped when they came, and what was predicted stayed.
+TEST(Estimator, SamplesThatComeLateTakeThePlaceOfThePredictedOnes) {
+  using Expected = Estimator::Expected;
+  for (const Expected how : {Expected::as_commanded, Expected::another_steers}) {
+    Estimator late({}, {}), in_time({}, {});
+    const auto sample = [](TimeNs t) {
+      return ImuSample{t, Vec3(0.5 * std::sin(seconds(t)), 0.3, 9.81), Vec3(0.1, -0.05, 0.2)};
+    };
+    TimeNs t = 0;
+    for (; t <= kSecond; t += kImuPeriod) late.on_imu(sample(t)), in_time.on_imu(sample(t));
+    const TimeNs silent_from = t, silent_to = t + 700 * kMillisecond;
+    for (; t <= silent_to; t += kImuPeriod) {
+      in_time.on_imu(sample(t));
+      if (t > silent_from + 20 * kMillisecond && t % (10 * kMillisecond) == 0)
+        late.bridge({t, Vec3(0, 0, 9.81), Vec3::Zero()}, how);
+    }
+    EXPECT_GT((late.state().velocity_mps - in_time.state().velocity_mps).norm(), 0.1);
+    EXPECT_EQ(late.guesses(), how == Expected::another_steers);
+    for (t = silent_from; t <= silent_to; t += kImuPeriod) late.on_imu(sample(t));
+    EXPECT_EQ(late.state().position, in_time.state().position);
+    EXPECT_EQ(late.state().velocity_mps, in_time.state().velocity_mps);
+    EXPECT_EQ(late.active().covariance(), in_time.active().covariance());
+    EXPECT_FALSE(late.guesses()) << "all was measured";
+  }
+}
+
 TEST(Estimator, InputsThatAreNotFiniteAreIgnoredAndDegradeHealth) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Estimator e({}, {}), clean({}, {});
