@@ -84,15 +84,27 @@ void Estimator::on_imu(const ImuSample& imu) {
   }
   if (lidar_.started() && imu.stamp <= last_imu_) return;
   if (!lidar_.started()) last_pose_ = imu.stamp;
-  // Late, but none is missing: what another did meanwhile was measured, and is no guess.
-  if (guesses() && imu.stamp <= guessed_until_ && imu.stamp - last_imu_ <= kNoneMissing) {
-    guessed_until_ = imu.stamp;
-    poses_since_guess_ = kPosesThatTell;
-  }
+  const bool guessed = guessed_until_ > last_imu_, none_missing = imu.stamp - last_imu_ <= kNoneMissing;
   last_imu_ = imu.stamp;
   lidar_.on_imu(imu);
   magnetic_.on_imu(imu);
   if (newcomer_) newcomer_->on_imu(imu);
+  if (guessed && none_missing) {  // they come late: what another did was measured
+    guessed_until_ = imu.stamp;
+    poses_since_guess_ = kPosesThatTell;
+  } else if (guessed) {
+    lose_track();
+  }
+}
+
+void Estimator::lose_track() {
+  if (!lidar_.started()) return;
+  lidar_.lose_track();
+  magnetic_.lose_track();
+  newcomer_.reset();
+  refused_ = 0;
+  guessed_until_ = state().stamp;
+  poses_since_guess_ = 0;
 }
 
 void Estimator::bridge(const ImuSample& expected, Expected how) {

@@ -47,8 +47,10 @@ class Estimator {
   /// a hover if another steers, who may do anything.
   enum class Expected { as_commanded, another_steers };
   void bridge(const ImuSample& expected, Expected how = Expected::as_commanded);
-  /// Another steered while the IMU was silent, and no two poses since then have told where it is and how
-  /// fast.
+  /// Nobody measured for a while what the vehicle did.
+  void lose_track();
+  /// Another steered while the IMU was silent, or nobody measured, and no two poses since then have told
+  /// where it is and how fast.
   bool guesses() const { return poses_since_guess_ < kPosesThatTell; }
   /// Ignores poses that are not finite, not newer than the last one, or older than a second.
   void on_pose(const PoseSample& pose);

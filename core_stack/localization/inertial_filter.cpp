@@ -17,6 +17,8 @@ constexpr TimeNs kAhead = 50 * kMillisecond;  // poses newer than the IMU by mor
 constexpr double kStartPosition = 0.05, kStartVelocity = 0.05, kStartAngle = 0.02, kStartAccelBias = 0.2,
                  kStartGyroBias = 0.02;
 constexpr double kRestartVelocity = 0.3;
+// After seconds in which another steered.
+constexpr double kLostPosition = 3, kLostVelocity = 1.5, kLostTilt = 0.2, kLostHeading = 0.8;
 
 // Indices of the blocks of the error state.
 constexpr int kP = 0, kV = 3, kA = 6, kBa = 9, kBg = 12;
@@ -199,6 +201,22 @@ void InertialFilter::on_scalar(const Scalar& measured) {
   correct(measured);
   steps_.back().scalars.push_back(measured);  // the stored state stays uncorrected: a replay starts from it
   history_.push(state_);
+}
+
+void InertialFilter::lose_track() {
+  if (steps_.empty()) return;
+  state_.orientation = from_heading(heading_of(state_.orientation));
+  state_.velocity_mps.setZero();
+  for (const int at : {kP, kV, kA}) {
+    covariance_.middleRows<3>(at).setZero();
+    covariance_.middleCols<3>(at).setZero();
+  }
+  Eigen::Matrix<double, 9, 1> sigma;
+  sigma << Vec3::Constant(kLostPosition), Vec3::Constant(kLostVelocity), kLostTilt, kLostTilt, kLostHeading;
+  covariance_.topLeftCorner<9, 9>() = sigma.array().square().matrix().asDiagonal();
+  const ImuSample last = steps_.back().imu;
+  steps_.clear();  // a pose from before tells nothing of now
+  note(last, 1);
 }
 
 void InertialFilter::restart_at(const PoseMeasurement& pose) {

@@ -57,6 +57,10 @@ class InertialFilter {
   };
   void on_scalar(const Scalar& measured);
 
+  /// What the vehicle did up to the last sample was not measured: it may hover metres from there, level. The
+  /// velocity is not told by how far the next pose is from here.
+  void lose_track();
+
   /// Restarts at a pose within the buffer, with the velocity and biases known at that time.
   void restart_at(const PoseMeasurement& pose);
 

@@ -145,7 +145,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
   const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
     return fit_to_map(cloud, map, guess, first_level, options_.registration, workspace_);
   };
-  const bool weak = !prediction.covered || since_s > kLongGap;
+  const bool gap = gap_ || since_s > kLongGap, weak = !prediction.covered || gap;
   const bool scan_to_scan =
       options_.scan_to_scan == ScanToScan::always || (options_.scan_to_scan == ScanToScan::automatic && weak);
   Pose guess = prediction.T_world_body;
@@ -156,7 +156,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
   Fit found = fit(map_, guess, weak ? coarsest : 0);
   // What nobody saw may have been flown as predicted; or the vehicle stopped, and nearly all is where it was.
   Pose expected = prediction.T_world_body;
-  if (since_s > kLongGap) {
+  if (gap) {
     const Fit stayed = fit(map_, T_world_last_, coarsest);
     if (stayed.good &&
         stayed.matched_fraction > std::max(kNearlyAll, found.good ? found.matched_fraction : 0)) {
@@ -208,6 +208,7 @@ void Loam::accept(const LoamPose& pose, const Cloud& cloud) {
   const double dt_s = seconds(pose.stamp - *last_valid_);
   twist_ = dt_s > 0 && dt_s < kHeld ? twist_between(T_world_last_, pose.T_world_body, dt_s) : Twist{};
   last_valid_ = pose.stamp;
+  gap_ = false;
   T_world_last_ = pose.T_world_body;
 
   const Vec3& place = pose.T_world_body.position;

@@ -57,6 +57,9 @@ class Loam {
   /// equals the prediction and leaves the local map unchanged. The first sweep is placed at its prediction.
   LoamPose process(const Sweep& sweep, const StateHistory& predicted, LoamEffort effort = LoamEffort::full);
 
+  /// The time up to the next sweep is not known, nor what was flown in it.
+  void note_gap() { gap_ = true; }
+
   const LocalMap& map() const { return map_; }
 
  private:
@@ -78,6 +81,7 @@ class Loam {
   Pose T_world_last_;  // the last valid pose; the start pose before the first one
   Twist twist_;        // twist at the last valid pose
   std::optional<TimeNs> last_stamp_, last_valid_;
+  bool gap_ = false;            // since the last valid pose
   bool first_is_bent_ = false;  // the map holds one sweep, compensated with an unknown motion
 };
 

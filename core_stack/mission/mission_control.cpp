@@ -394,6 +394,11 @@ void MissionControl::on_authority(TimeNs, Authority who, const std::string& reas
     let_go(reason);
 }
 
+void MissionControl::on_gap() {
+  onboard_.flight.lose_track();
+  sensors_.note_gap();
+}
+
 /// Another steers. The vehicle still localizes and maps, and is ready to hover wherever it is.
 void MissionControl::let_go(const std::string& reason) {
   onboard_.flight.let_go();

@@ -84,6 +84,7 @@ class MissionControl final : public VehicleSink {
   void on_battery(const BatteryStatus& s) override { endurance_.note(s); }
   void on_ground(TimeNs stamp) override;
   void on_lift_off(TimeNs stamp) override;
+  void on_gap() override;
   void on_authority(TimeNs stamp, Authority who, const std::string& reason) override;
   void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) override;
 

@@ -55,6 +55,10 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
       });
 }
 
+void SensorPipeline::note_gap() {
+  if (loam_) loam_->job("gap", kLocalizationBudget, [](Loam& loam) { loam.note_gap(); });
+}
+
 /// The scan with a stamp that can be right; null if there is none.
 std::shared_ptr<const LidarScan> SensorPipeline::stamped_right(std::shared_ptr<const LidarScan> scan) {
   const TimeNs before = lidar_clock_.correction();

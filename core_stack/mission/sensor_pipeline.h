@@ -54,6 +54,8 @@ class SensorPipeline {
   void on_rgb(const std::shared_ptr<const RgbFrame>& frame);
   /// Used only if no LiDAR locates the vehicle.
   void on_pose(const PoseSample& s);
+  /// What the vehicle measured for a while never came.
+  void note_gap();
   /// Stops mapping: the flight ends without the map.
   void close() { closed_ = true; }
 

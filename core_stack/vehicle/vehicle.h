@@ -62,6 +62,9 @@ class VehicleSink {
   /// Another steers the vehicle from now on: the core's commands have an effect only while it is the core. A
   /// vehicle that never says so is steered by whom its description names.
   virtual void on_authority(TimeNs, Authority, const std::string&) {}
+  /// What the vehicle measured for a while never came, though the stamps show no gap: the core stood still,
+  /// and its clock was set back. The vehicle may be elsewhere.
+  virtual void on_gap() {}
   /// Nothing more will come from this vehicle (crash, empty battery, end of a recording).
   virtual void on_lost(TimeNs stamp, MissionOutcome outcome, const std::string& reason) = 0;
 };

@@ -81,8 +81,10 @@ bool MavlinkVehicle::due(TimeNs& last, double rate_hz) const {
 
 void MavlinkVehicle::step() {
   const TimeNs measured = executive_->measured_now();
-  if (executive_->lost_time() != lost_time_) clock_ = {};  // the executive's clock was set back
-  lost_time_ = executive_->lost_time();
+  if (std::exchange(lost_time_, executive_->lost_time()) != executive_->lost_time()) {
+    clock_ = {};  // the executive's clock was set back
+    sink_->on_gap();
+  }
   connection_.receive();
   while (const std::optional<Frame> frame = connection_.next()) {
     if (frame->is<Timesync>()) answer(frame->as<Timesync>(), measured);

@@ -85,6 +85,7 @@ void RealTimeVehicle::note_lost_time() {
   offset_.forget();
   if (next_ && measured(*next_)) next_.reset();
   if (TimeNs* stamp = next_ ? stamp_of(*next_) : nullptr) *stamp = std::min(*stamp, now);
+  sink_->on_gap();
   give_away("the core stood still for " + in_seconds(lost) + ", so the vehicle steers itself");
 }
 

@@ -46,6 +46,8 @@ class Flight {
     }
     mass_.on_specific_force(s.specific_force_mps2.z());
   }
+  /// Nobody measured for a while what the vehicle did.
+  void lose_track() { estimator_.lose_track(); }
   void on_pose(const PoseSample& s) { estimator_.on_pose(s); }
   /// Returns false if the estimator refuses the pose.
   bool on_lidar_pose(const PoseMeasurement& p) { return estimator_.on_lidar_pose(p); }

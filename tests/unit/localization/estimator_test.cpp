@@ -209,6 +209,31 @@ TEST(Estimator, AfterASilenceInWhichAnotherSteeredTheBarometerDoesNotBecomeSpeed
   EXPECT_FALSE(e.guesses());
 }
 
+// The core stood still for a second, and its clock was set back: the stamps have no gap, but the vehicle has
+// braked meanwhile. The way to the next pose, flown in 0.1 s, then became a speed of 4 m/s.
+TEST(Estimator, WhatWasFlownUnseenDoesNotBecomeSpeed) {
+  Estimator e({}, {});
+  const Vec3 speed(0.8, -0.3, 0);
+  TimeNs t = 0;
+  const auto fly = [&](TimeNs until, const Vec3& from, const Vec3& velocity) {
+    for (const TimeNs begin = t; t < until; t += kImuPeriod) {
+      e.on_imu({t, Vec3(0, 0, 9.81), Vec3::Zero()});
+      if (t % (100 * kMillisecond) == 0)
+        e.on_lidar_pose(
+            {t, {from + velocity * seconds(t - begin), Quat::Identity()}, 1e-5 * Matrix6::Identity()});
+    }
+  };
+  fly(2 * kSecond, Vec3::Zero(), Vec3::Zero());
+  e.on_imu({t, Vec3(0, 0, 9.81), Vec3::Zero()});
+  const Vec3 stopped = seconds(kSecond) * speed;
+  e.lose_track();
+  EXPECT_TRUE(e.guesses());
+  fly(t + 350 * kMillisecond, stopped, Vec3::Zero());
+  EXPECT_FALSE(e.guesses());
+  EXPECT_LT(e.state().velocity_mps.norm(), 0.1);
+  EXPECT_LT((e.state().position - stopped).norm(), 0.02);
+}
+
 // As it was: the samples of the silence were dropped when they came, and what was predicted stayed.
 TEST(Estimator, SamplesThatComeLateTakeThePlaceOfThePredictedOnes) {
   using Expected = Estimator::Expected;
