@@ -25,7 +25,7 @@ TEST(Address, RefusesOthersWithTheReason) {
   } catch (const core::InputError& e) {
     EXPECT_STREQ(
         e.what(),
-        "address: tcp:host:5x: the port is no number up to 65535; expected tcp:HOST:PORT, tcp:PORT or "
+        "tcp:host:5x: the port is no number up to 65535; expected tcp:HOST:PORT, tcp:PORT or "
         "unix:PATH");
   }
 }
