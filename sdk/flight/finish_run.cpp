@@ -26,6 +26,7 @@
 #include "sdk/evaluation/report/team_report.h"
 #include "sdk/evaluation/team/team_metrics.h"
 #include "sdk/evaluation/team/team_object_figures.h"
+#include "sdk/flight/truth_of_flight.h"
 #include "sdk/terminal/terminal.h"
 
 namespace karst::flight {
@@ -179,6 +180,7 @@ void take_truth(const fs::path& run_dir, const fs::path& truth, Report report) {
   if (!fs::is_regular_file(truth / "ground_truth.tum"))
     throw core::InputError(truth.string(), "",
                            "holds no ground_truth.tum: is it a folder of karst vehicle serve --truth?");
+  check_same_flight(run_dir, truth);
   const Finishing how = recorded_finishing(truth, report);
   for (const char* file : kTruthFiles) {
     if (!fs::is_regular_file(truth / file)) continue;

@@ -21,8 +21,8 @@ struct Finishing {
 Finishing recorded_finishing(const std::filesystem::path& run_dir, Report report);
 
 /// Completes a run with the ground truth that the vehicle's own process wrote into `truth` (karst vehicle
-/// serve), and evaluates it again. Throws core::InputError if that folder has none, or the run has other
-/// truth already.
+/// serve), and evaluates it again. Throws core::InputError if that folder has none or that of
+/// another flight (truth_of_flight.h), or the run has other truth already.
 void take_truth(const std::filesystem::path& run_dir, const std::filesystem::path& truth, Report report);
 
 /// Writes metrics.json and, if asked, report.html into a run directory; returns the metrics.
