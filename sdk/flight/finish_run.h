@@ -15,9 +15,10 @@ struct Finishing {
   Report report = Report::written;
   std::filesystem::path cave_cache = {};  // folder for data common to all flights of a cave; "": no cache
   core::MeshKeys mesh = {};               // of a cave that is a bare mesh
+  std::string problem = {};               // why the cave is not known; finish_run reports it
 };
 
-/// As mission.info says. One that is damaged is reported on standard error: then the cave is not known.
+/// As mission.info says, with the problem if it is not there or damaged.
 Finishing recorded_finishing(const std::filesystem::path& run_dir, Report report);
 
 /// Completes a run with the ground truth that the vehicle's own process wrote into `truth` (karst vehicle

@@ -32,10 +32,9 @@ std::optional<core::VoxelMap> whole_map(const fs::path& run_dir, RecoveredMap& o
   return whole ? std::move(map) : std::nullopt;
 }
 
-/// What no other reader misses.
+/// What no other reader misses; mission.info is read when the run is finished.
 void note_missing(const fs::path& run_dir, std::vector<std::string>& notes) {
-  for (const char* name : {"mission.info", "events.jsonl", "telemetry.csv", "trajectory.tum",
-                           "localization.csv", "decisions.csv", "map_growth.bin", core::kMapCellsName, "timing.json"}) {
+  for (const char* name : {"events.jsonl", "telemetry.csv", "trajectory.tum", "localization.csv", "decisions.csv", "map_growth.bin", core::kMapCellsName, "timing.json"}) {
     std::error_code error;
     if (!fs::exists(run_dir / name, error)) notes.push_back(std::string(name) + ": is not there");
   }
@@ -89,7 +88,7 @@ RecoveredMap recover_map(const fs::path& run_dir) {
     }
     return out;
   }
-  if (run.setting("map.resolution").empty())
+  if (!run.settings.empty() && run.setting("map.resolution").empty())
     out.notes.emplace_back("mission.info: has no map.resolution; 0.2 m is assumed");
   if (const auto map =
           evaluation::read_map_cells(run_dir / core::kMapCellsName, run.map_resolution_m(), out.notes)) {
