@@ -320,8 +320,8 @@ bool MissionControl::may_fly() {
   std::string why_not;
   for (const VehicleCheck& check : vehicle_.checks())
     if (!check.holds)
-      why_not += (why_not.empty() ? "" : "; ") + check.name + " must be " +
-                 check.required + (check.found.empty() ? ", and is not known" : ", and is " + check.found);
+      why_not += (why_not.empty() ? "" : "; ") + check.name + " must be " + check.required +
+                 (check.found.empty() ? ", and is not known" : ", and is " + check.found);
   if (why_not != why_not_ && !why_not.empty())
     onboard_.recorder.write(now(), event::Log{"it waits on the ground: " + why_not});
   why_not_ = why_not;
@@ -457,8 +457,9 @@ MapQuestion MissionControl::map_question() const {
     question.ahead = path_.ahead(now(), takes_off ? std::optional(take_off_.ground_m()) : std::nullopt);
   if (takes_off || traits_of(phases_.phase()).above_ground)
     question.descent_path = DescentQuery{
-        onboard_.flight.until_stop(now()).points.back(), flown_path_.back(path_back_m(endurance_.battery_seconds_left())),
-        onboard_.vehicle.radius_m, flown_path_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
+        onboard_.flight.until_stop(now()).points.back(),
+        flown_path_.back(path_back_m(endurance_.battery_seconds_left())), onboard_.vehicle.radius_m,
+        flown_path_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
   question.narrow_places = path_.narrow_places();
   question.touch_only = path_.as_come();
   question.frontier = goals_.frontier();

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "core_stack/common/error.h"
-#include "core_stack/common/opened_by_key.h"
 #include "core_stack/common/geometry.h"
+#include "core_stack/common/opened_by_key.h"
 #include "plugins/lidar_drivers/lidar_driver_options.h"
 #include "plugins/mavlink/lidar_scans.h"
 #include "plugins/mavlink/link/open_link.h"

@@ -143,9 +143,8 @@ void leave_out_others(const Mission& m, const OptionTable& table, pt::ptree& tre
   for (const std::string& other : core::vehicles_in(core::plugin_root() / "vehicles")) {
     if (other == m.vehicle || !tree.get_child_optional(other)) continue;
     const std::string meant = m.vehicle + "." + other;
-    const bool has = std::any_of(table.rows().begin(), table.rows().end(), [&meant](const auto& row) {
-      return row.key.starts_with(meant + ".");
-    });
+    const bool has = std::any_of(table.rows().begin(), table.rows().end(),
+                                 [&meant](const auto& row) { return row.key.starts_with(meant + "."); });
     if (for_this_vehicle && has)
       throw InputError(m.file, other,
                        "has no effect on the vehicle " + m.vehicle + ": write it as " + meant + ", " +

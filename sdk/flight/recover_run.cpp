@@ -34,7 +34,8 @@ std::optional<core::VoxelMap> whole_map(const fs::path& run_dir, RecoveredMap& o
 
 /// What no other reader misses; mission.info is read when the run is finished.
 void note_missing(const fs::path& run_dir, std::vector<std::string>& notes) {
-  for (const char* name : {"events.jsonl", "telemetry.csv", "trajectory.tum", "localization.csv", "decisions.csv", "map_growth.bin", core::kMapCellsName, "timing.json"}) {
+  for (const char* name : {"events.jsonl", "telemetry.csv", "trajectory.tum", "localization.csv",
+                           "decisions.csv", "map_growth.bin", core::kMapCellsName, "timing.json"}) {
     std::error_code error;
     if (!fs::exists(run_dir / name, error)) notes.push_back(std::string(name) + ": is not there");
   }

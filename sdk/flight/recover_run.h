@@ -6,8 +6,8 @@
 
 namespace karst::flight {
 
-/// Whether the flight came to its end and everything was made of it: there is nothing to recover. The report is
-/// made only if it is asked for, and does not count.
+/// Whether the flight came to its end and everything was made of it: there is nothing to recover. The report
+/// is made only if it is asked for, and does not count.
 bool is_whole(const std::filesystem::path& run_dir);
 
 struct RecoveredMap {

@@ -26,7 +26,8 @@ void print_text(const std::string& text) {
 std::string battery_text(const std::optional<core::BatteryStatus>& battery) {
   if (!battery) return "unknown           ";
   const int left_s = static_cast<int>(battery->seconds_left);
-  return core::format_text("%3.0f %% (%2d:%02d left)", 100 * battery->fraction_left, left_s / 60, left_s % 60);
+  return core::format_text("%3.0f %% (%2d:%02d left)", 100 * battery->fraction_left, left_s / 60,
+                           left_s % 60);
 }
 
 void show_team(core::TimeNs now, const std::vector<core::MissionStatus>& vehicles) {
@@ -80,8 +81,7 @@ void StatusLine::print(std::string reason, std::string status) {
 void StatusLine::show_alone(const core::MissionStatus& s) {
   const char* erase = renews_ ? "\r\033[K" : "";
   std::string reason;
-  if (s.waits_for != waits_for_ && !s.waits_for.empty())
-    reason = erase + core::printable(s.waits_for) + "\n";
+  if (s.waits_for != waits_for_ && !s.waits_for.empty()) reason = erase + core::printable(s.waits_for) + "\n";
   waits_for_ = s.waits_for;
   if (!renews_ && s.time % kLineEvery != 0) {
     if (!reason.empty()) print(std::move(reason), "");

@@ -33,10 +33,10 @@ class StatusLine {
   bool renews_;                  // updates one line, on a terminal
   core::InheritingMutex mutex_;  // of what follows
   core::Condition wake_;
-  std::string reason_, next_;    // to be printed
+  std::string reason_, next_;  // to be printed
   bool over_ = false;
   std::string waits_for_;  // as shown last
-  std::thread printer_;  // in real time
+  std::thread printer_;    // in real time
 };
 
 }  // namespace karst::flight

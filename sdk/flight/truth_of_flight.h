@@ -1,5 +1,5 @@
-// Whether ground truth that was written elsewhere is of a flight. Nothing in it names the flight: the seed, the
-// start and the end are compared.
+// Whether ground truth that was written elsewhere is of a flight. Nothing in it names the flight: the seed,
+// the start and the end are compared.
 #pragma once
 #include <filesystem>
 

@@ -21,7 +21,9 @@ class Endurance {
   /// Of the mission's maximum flight time.
   double mission_seconds_left(TimeNs now) const { return max_flight_time_s_ - seconds(now - begin_); }
   /// Limited by the battery and by the mission's maximum flight time.
-  double seconds_left(TimeNs now) const { return std::min(battery_seconds_left(), mission_seconds_left(now)); }
+  double seconds_left(TimeNs now) const {
+    return std::min(battery_seconds_left(), mission_seconds_left(now));
+  }
 
  private:
   double max_flight_time_s_;

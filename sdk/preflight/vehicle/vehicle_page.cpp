@@ -90,8 +90,8 @@ std::string plots_of(const VehicleMeasurements& m) {
 std::string vehicle_page(const VehicleMeasurements& m, const std::vector<Check>& checks) {
   const bool go = verdict_of(checks) != Outcome::no_go;
   std::string body = "<h1>Preflight: vehicle " + xml_text(m.vehicle.name) + "</h1>\n<p>By " +
-                     xml_text(source_text(m)) + ".</p>\n<p class=\"verdict " +
-                     (go ? "go" : "no_go") + "\">" + xml_text(verdict_text(checks)) + "</p>\n";
+                     xml_text(source_text(m)) + ".</p>\n<p class=\"verdict " + (go ? "go" : "no_go") + "\">" +
+                     xml_text(verdict_text(checks)) + "</p>\n";
   body += list_of(checks, Outcome::no_go, "Reasons against it");
   body += list_of(checks, Outcome::watch, "Watch for");
   body += "<h2>For a person to check</h2>\n<ul class=\"boxes\">\n";

@@ -171,8 +171,7 @@ std::optional<double> turn_rate_radps(const MotionFigures& motion) {
     std::vector<double> radps;
     for (const TurnRate& r : *rates)
       if (std::isfinite(r.radps)) radps.push_back(r.radps);
-    if (!radps.empty())
-      greatest = std::max(greatest.value_or(0), quantile(std::move(radps), kThreeQuarters));
+    if (!radps.empty()) greatest = std::max(greatest.value_or(0), quantile(std::move(radps), kThreeQuarters));
   }
   return greatest;
 }
@@ -214,11 +213,12 @@ void judge_motion(const VehicleMeasurements& m, Judge& judge) {
   }
   const MotionFigures& motion = *m.motion;
   if (hardly_turned(motion)) {  // all else would compare noise with noise
-    judge.add(m.vehicle.lidar ? Part::lidar : Part::imu, "turned by hand",
-              format_text("hardly: %.1f deg/s", *turn_rate_radps(motion) / kDegree),
-              format_text("at least %.1f deg/s about each axis", kLeastRate_radps / kDegree), Outcome::no_go,
-              "repeat; when the terminal asks for it, take it into your hands, and roll it, nod it and turn it, "
-              "each several times by 30 deg and more. Mounting, delays and axes were not judged");
+    judge.add(
+        m.vehicle.lidar ? Part::lidar : Part::imu, "turned by hand",
+        format_text("hardly: %.1f deg/s", *turn_rate_radps(motion) / kDegree),
+        format_text("at least %.1f deg/s about each axis", kLeastRate_radps / kDegree), Outcome::no_go,
+        "repeat; when the terminal asks for it, take it into your hands, and roll it, nod it and turn it, "
+        "each several times by 30 deg and more. Mounting, delays and axes were not judged");
     return;
   }
   judge.add(Part::imu, "samples at the limit of its range", format_text("%.1f %%", 100 * motion.clipped), "0",

@@ -277,8 +277,9 @@ TEST(MissionFile, ASectionOfAnotherVehicleIsRefusedWhereThisOneHasItsOwn) {
   const std::string error = error_of("autopilot.info", text);
   EXPECT_TRUE(holds(error, "autopilot.info: simulator: ")) << error;
   EXPECT_TRUE(holds(error, "simulated_autopilot.simulator")) << error;
-  EXPECT_EQ(error_of("autopilot.info", "vehicle simulated_autopilot\nsimulated_autopilot { simulator { "
-                                       "battery_minutes \"8 min\" } }\n"),
+  EXPECT_EQ(error_of("autopilot.info",
+                     "vehicle simulated_autopilot\nsimulated_autopilot { simulator { "
+                     "battery_minutes \"8 min\" } }\n"),
             "accepted");
   // A file for another vehicle may still be flown with this one.
   EXPECT_EQ(error_of("other.info", "simulator { battery_minutes \"8 min\" }\n",

@@ -28,8 +28,8 @@ TEST(StatusLine, GivesWhatTheVehicleWaitsForALineWheneverItChanges) {
   core::MissionStatus status;
   const std::string long_reason = "waits: " + std::string(80, 'x') + "\033";
   std::vector<core::MissionStatus> all;
-  for (const std::string& reason : {std::string("waits: not armed"), std::string("waits: not armed"),
-                                    std::string(), long_reason}) {
+  for (const std::string& reason :
+       {std::string("waits: not armed"), std::string("waits: not armed"), std::string(), long_reason}) {
     status.time += core::kSecond;
     status.waits_for = reason;
     all.push_back(status);

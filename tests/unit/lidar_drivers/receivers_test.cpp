@@ -119,22 +119,25 @@ TEST(Receivers, OptionsThatCannotBeAreRefusedWithTheirReason) {
   EXPECT_EQ(open_lidar({}, "mission.info", "mavlink.lidar"), nullptr);
   LidarDriverOptions o;
   o.unit = LidarUnit::ouster;
-  EXPECT_EQ(
-      refusal(o),
-      "mission.info: mavlink.lidar.metadata: is needed for an Ouster sensor: its beams differ from unit to unit");
+  EXPECT_EQ(refusal(o),
+            "mission.info: mavlink.lidar.metadata: is needed for an Ouster sensor: its beams differ from "
+            "unit to unit");
   o.metadata = "/nowhere/metadata.json";
-  EXPECT_TRUE(refusal(o).starts_with("mission.info: mavlink.lidar.metadata: /nowhere/metadata.json")) << refusal(o);
+  EXPECT_TRUE(refusal(o).starts_with("mission.info: mavlink.lidar.metadata: /nowhere/metadata.json"))
+      << refusal(o);
   o.mount = "0 0 1 0 0";
   EXPECT_NE(refusal(o).find("mission.info: mavlink.lidar.mount: is not"), std::string::npos);
   LidarDriverOptions livox;
   livox.unit = LidarUnit::livox_mid360;
   livox.address = "nobody";
   livox.port = 47311;
-  EXPECT_EQ(refusal(livox), "mission.info: mavlink.lidar.address: \"nobody\" is not an address such as 192.168.1.10");
+  EXPECT_EQ(refusal(livox),
+            "mission.info: mavlink.lidar.address: \"nobody\" is not an address such as 192.168.1.10");
   UdpReceiver first({.port = 0});
   livox.address = "";
   livox.port = first.port();
-  EXPECT_EQ(refusal(livox), "mission.info: mavlink.lidar.port: UDP port " + std::to_string(first.port()) + ": Address already in use");
+  EXPECT_EQ(refusal(livox), "mission.info: mavlink.lidar.port: UDP port " + std::to_string(first.port()) +
+                                ": Address already in use");
 }
 
 TEST(Receivers, AnOusterIsOpenedByItsMetadata) {

@@ -56,8 +56,7 @@ class FakeVehicle final : public Vehicle {
   }
 
   // What a test may change in flight.
-  bool imu_works = true, pose_sensor_works = true, lidar_works = true,
-       battery_speaks = true;
+  bool imu_works = true, pose_sensor_works = true, lidar_works = true, battery_speaks = true;
   double battery_s = 120;                          // left now
   double load_kg = 0;                              // that the description does not know of
   Vec3 wind_push_mps2 = Vec3::Zero();              // world frame

@@ -150,8 +150,8 @@ TEST(VehicleRules, WhatTheMotionShows) {
 // Its stamps were blamed: the delay and the agreement of noise with noise.
 TEST(VehicleRules, AVehicleThatWasNotTurnedIsNotBlamedForItsStamps) {
   const auto stood = [](VehicleMeasurements& m) {
-    m.motion->gyroscope_rates = m.motion->lidar_rates = {
-        {0, 0.002}, {core::kSecond, 0.01}, {2 * core::kSecond, 0.004}};
+    m.motion->gyroscope_rates =
+        m.motion->lidar_rates = {{0, 0.002}, {core::kSecond, 0.01}, {2 * core::kSecond, 0.004}};
     m.motion->lidar_rates.push_back({3 * core::kSecond, 9});  // a scan was matched wrongly
     m.motion->hand_eye->explained = 0.01;
     m.motion->hand_eye->delay_s = -0.43;
