@@ -21,9 +21,9 @@ constexpr TimeNs kLastLook = 300 * kMillisecond;  // for the last images of the 
 
 /// How far back along the flown path a vehicle that must land may search for ground: at 0.6 m/s on average
 /// (EmergencyLanding), with time left to descend.
-double path_back_m(const BatteryStatus& battery) {
+double path_back_m(double battery_seconds_left) {
   constexpr double kFarthest_m = 55, kMean_mps = 0.6, kDescent_s = 15;
-  return std::clamp(kMean_mps * (battery.seconds_left - kDescent_s), 0.0, kFarthest_m);
+  return std::clamp(kMean_mps * (battery_seconds_left - kDescent_s), 0.0, kFarthest_m);
 }
 
 /// The longest sideways flight on a pose that may no longer be valid.
@@ -224,14 +224,13 @@ void MissionControl::watch_steps() {
 }
 
 void MissionControl::report_to_watcher() {
-  const BatteryStatus& battery = endurance_.battery();
   const MissionStatus status{now(),
                              phase(),
-                             battery.fraction_left,
-                             battery.seconds_left,
+                             endurance_.battery(),
                              sensors_.explored_m3(),
                              onboard_.flight.state().velocity_mps.norm(),
-                             goals_.goal() ? goals_.goal()->why : ""};
+                             goals_.goal() ? goals_.goal()->why : "",
+                             waits_for()};
   if (const int overruns = onboard_.executive.overruns(); overruns > overruns_) {
     onboard_.recorder.write(now(), event::Overrun{overruns - overruns_});
     overruns_ = overruns;
@@ -321,11 +320,21 @@ bool MissionControl::may_fly() {
   std::string why_not;
   for (const VehicleCheck& check : vehicle_.checks())
     if (!check.holds)
-      why_not += (why_not.empty() ? "it waits on the ground: " : "; ") + check.name + " must be " +
-                 check.required + (check.found.empty() ? ", and is not known" : ", and is " + check.found);
-  if (why_not != why_not_ && !why_not.empty()) onboard_.recorder.write(now(), event::Log{why_not});
+      why_not += (why_not.empty() ? "" : "; ") + check.name + " must be " + check.required +
+                 (check.found.empty() ? ", and is not known" : ", and is " + check.found);
+  if (why_not != why_not_ && !why_not.empty())
+    onboard_.recorder.write(now(), event::Log{"it waits on the ground: " + why_not});
   why_not_ = why_not;
   return why_not.empty();
+}
+
+/// Of the reasons that are recorded as events, the present one.
+std::string MissionControl::waits_for() const {
+  const bool pilot = authority_ != Authority::core;
+  if (phases_.in(Phase::manual) && pilot)
+    return std::string("the ") + name_of(authority_) + " steers: " + authority_reason_;
+  const std::string& reason = pilot ? authority_reason_ : why_not_;
+  return phases_.in(Phase::standby) && !reason.empty() ? "waits: " + reason : "";
 }
 
 void MissionControl::take_off() {
@@ -453,8 +462,9 @@ MapQuestion MissionControl::map_question() const {
     question.ahead = path_.ahead(now(), takes_off ? std::optional(take_off_.ground_m()) : std::nullopt);
   if (takes_off || traits_of(phases_.phase()).above_ground)
     question.descent_path = DescentQuery{
-        onboard_.flight.until_stop(now()).points.back(), flown_path_.back(path_back_m(endurance_.battery())),
-        onboard_.vehicle.radius_m, flown_path_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
+        onboard_.flight.until_stop(now()).points.back(),
+        flown_path_.back(path_back_m(endurance_.battery_seconds_left())), onboard_.vehicle.radius_m,
+        flown_path_.begun() ? std::optional(return_home_.hover()) : std::nullopt};
   question.narrow_places = path_.narrow_places();
   question.touch_only = path_.as_come();
   question.frontier = goals_.frontier();
@@ -483,7 +493,7 @@ void MissionControl::keep_safe() {
   o.tracking_error_m = (flight.state().position - flight.reference().position).norm();
   if (phases_.under_way()) o.hull_clearance_m = sensors_.hull_clearance_m();  // not during lift-off
   o.blind_s = seconds(sensors_.blind_for());
-  o.battery_s = endurance_.battery().seconds_left;
+  o.battery_s = endurance_.battery_seconds_left();
   if (const auto& region = onboard_.options.region; region && flown_path_.begun()) {
     const Vec3& here = flight.state().position;
     if (region->depth_m(here) < onboard_.vehicle.radius_m) o.outside = region->nearest_part(here);
@@ -529,10 +539,12 @@ void MissionControl::react(const SafetyVerdict& before) {
 
 void MissionControl::record() {
   const Flight& flight = onboard_.flight;
-  const BatteryStatus& battery = endurance_.battery();
+  const auto& battery = endurance_.battery();
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   onboard_.recorder.pose(flight.state());
   onboard_.recorder.telemetry({now(), phase(), flight.state(), flight.reference().position,
-                               battery.fraction_left, battery.seconds_left, sensors_.explored_m3(),
+                               battery ? battery->fraction_left : kUnknown,
+                               battery ? battery->seconds_left : kUnknown, sensors_.explored_m3(),
                                return_home_.distance_m()});
   if (const auto& m3 = sensors_.unsurveyed_m3()) onboard_.recorder.unsurveyed(now(), *m3);
   if (flown_path_.begun()) flown_path_.note(flight.reference().position);

@@ -28,8 +28,10 @@ namespace karst::core {
 struct MissionStatus {
   TimeNs time = 0;
   Phase phase = Phase::standby;
-  double battery_fraction = 1, battery_seconds_left = 0, explored_m3 = 0, speed_mps = 0;
+  std::optional<BatteryStatus> battery;  // nothing before its first message
+  double explored_m3 = 0, speed_mps = 0;
   std::string goal;
+  std::string waits_for;  // why the core does not fly: "waits: not armed"; "" if it does
 };
 
 /// Called every second of flight; returns false to make the vehicle land where it is.
@@ -118,6 +120,7 @@ class MissionControl final : public VehicleSink {
   bool found_again() const;
   bool lands_at_home() const;
   bool may_fly();
+  std::string waits_for() const;
   void let_go(const std::string& reason);
   void wait_on_ground();
   void take_over();
@@ -157,7 +160,7 @@ class MissionControl final : public VehicleSink {
   Authority authority_;  // who steers
   std::string authority_reason_;
   Phase resumes_ = Phase::explore;        // when the core steers again
-  std::string why_not_;                   // it may not fly, as recorded last
+  std::string why_not_;                   // it may not fly
   bool lands_lost_ = false;               // for want of a pose
   std::optional<std::string> emergency_;  // why it lands at once, if it does
   std::optional<MissionResult> result_;

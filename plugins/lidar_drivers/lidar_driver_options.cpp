@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/opened_by_key.h"
 #include "plugins/lidar_drivers/livox_receiver.h"
 #include "plugins/lidar_drivers/ouster_receiver.h"
 #include "plugins/lidar_drivers/packet/mount.h"
@@ -37,26 +38,32 @@ void describe(core::OptionTable& t, LidarDriverOptions& o) {
       "with ptp: the sensor's clock minus the host's, such as 37 s if the sensor keeps TAI and the host UTC");
 }
 
-std::unique_ptr<ScanReceiver> open_lidar(const LidarDriverOptions& o, const std::string& source) {
+std::unique_ptr<ScanReceiver> open_lidar(const LidarDriverOptions& o, const std::string& source,
+                                         const std::string& section) {
   if (o.unit == LidarUnit::none) return nullptr;
-  const core::Pose T_body_sensor = mount_of(source, "lidar.mount", o.mount);
-  const auto open = [&](std::int64_t given, std::int64_t usual) {
+  const core::Pose T_body_sensor = mount_of(source, section + ".mount", o.mount);
+  if (!o.address.empty() && !is_address(o.address))
+    throw core::InputError(source, section + ".address",
+                           "\"" + o.address + "\" is not an address such as 192.168.1.10");
+  const auto open = [&](const char* key, std::int64_t given, std::int64_t usual) {
     UdpReceiver::Options udp;
     udp.port = static_cast<std::uint16_t>(given == 0 ? usual : given);
     udp.sender = o.address;
-    return std::make_unique<UdpReceiver>(udp);
+    return core::opened_by_key(source, section + "." + key,
+                               [&] { return std::make_unique<UdpReceiver>(udp); });
   };
   StampSource stamps(o.clock, core::from_seconds(o.clock_ahead_s), host_clock_ns);
   if (o.unit == LidarUnit::livox_mid360)
-    return std::make_unique<LivoxReceiver>(T_body_sensor, open(o.port, kLivoxPort),
-                                           o.imu ? open(o.imu_port, kLivoxImuPort) : nullptr,
+    return std::make_unique<LivoxReceiver>(T_body_sensor, open("port", o.port, kLivoxPort),
+                                           o.imu ? open("imu_port", o.imu_port, kLivoxImuPort) : nullptr,
                                            std::move(stamps));
   if (o.metadata.empty())
-    throw core::InputError(source, "lidar.metadata",
+    throw core::InputError(source, section + ".metadata",
                            "is needed for an Ouster sensor: its beams differ from unit to unit");
   return std::make_unique<OusterReceiver>(
-      read_ouster_metadata(o.metadata), T_body_sensor, open(o.port, kOusterPort),
-      o.imu ? open(o.imu_port, kOusterImuPort) : nullptr, std::move(stamps));
+      core::opened_by_key(source, section + ".metadata", [&] { return read_ouster_metadata(o.metadata); }),
+      T_body_sensor, open("port", o.port, kOusterPort),
+      o.imu ? open("imu_port", o.imu_port, kOusterImuPort) : nullptr, std::move(stamps));
 }
 
 }  // namespace karst::lidar

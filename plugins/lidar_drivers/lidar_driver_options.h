@@ -31,7 +31,8 @@ struct LidarDriverOptions {
 void describe(core::OptionTable& t, LidarDriverOptions& o);
 
 /// Opens the ports. Null without a unit. Throws InputError: metadata, port, address or mount. `source` names
-/// where the options come from.
-std::unique_ptr<ScanReceiver> open_lidar(const LidarDriverOptions& options, const std::string& source);
+/// where the options come from, and `section` what their keys stand below, such as "mavlink.lidar".
+std::unique_ptr<ScanReceiver> open_lidar(const LidarDriverOptions& options, const std::string& source,
+                                         const std::string& section);
 
 }  // namespace karst::lidar

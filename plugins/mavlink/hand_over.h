@@ -56,6 +56,7 @@ class HandOver {
   bool asks(core::TimeNs now, bool streaming);
 
   bool connected(core::TimeNs now) const;
+  bool heard() const { return heartbeat_at_.has_value(); }  // since the start
   bool armed() const { return armed_; }
   bool follows_setpoints() const { return mode_ && mode_->flown_by == FlownBy::setpoints; }
 

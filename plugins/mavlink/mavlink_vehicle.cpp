@@ -44,6 +44,7 @@ MavlinkVehicle::MavlinkVehicle(const MavlinkOptions& o, Parts parts)
       scans_(std::move(parts.scans)),
       climb_m_(parts.climb_m),
       run_dir_(std::move(parts.run_dir)),
+      address_(std::move(parts.address)),
       parameters_(rules_of(o.firmware, o.control, o.hover_thrust), o.firmware),
       hand_over_(o.firmware, o.engage, o.resume),
       telemetry_(o.battery_wh),
@@ -127,6 +128,7 @@ void MavlinkVehicle::answer(const Timesync& m, TimeNs measured) {
 
 void MavlinkVehicle::report_steering() {
   HandOver::Steering steering = hand_over_.steering(now());
+  if (!hand_over_.heard() && !address_.empty()) steering.reason += " at " + address_;
   if (steering.who == reported_.who && steering.reason == reported_.reason) return;
   reported_ = std::move(steering);
   sink_->on_authority(now(), reported_.who, reported_.reason);

@@ -24,6 +24,7 @@ class MavlinkVehicle final : public core::Vehicle {
     std::unique_ptr<ScanSource> scans;  // may be null
     double climb_m = 1.5;
     std::string run_dir;
+    std::string address = {};  // of the link, for persons; "" if it has none
   };
   MavlinkVehicle(const MavlinkOptions& options, Parts parts);
 
@@ -66,7 +67,7 @@ class MavlinkVehicle final : public core::Vehicle {
   Connection connection_;
   std::unique_ptr<ScanSource> scans_;
   double climb_m_;
-  std::string run_dir_;
+  std::string run_dir_, address_;
   ClockSync clock_;
   CommandQueue commands_;
   ParameterReader parameters_;

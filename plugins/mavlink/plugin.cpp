@@ -4,6 +4,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/geometry.h"
+#include "core_stack/common/opened_by_key.h"
 #include "plugins/lidar_drivers/lidar_driver_options.h"
 #include "plugins/mavlink/lidar_scans.h"
 #include "plugins/mavlink/link/open_link.h"
@@ -42,10 +43,13 @@ class MavlinkPlugin final : public core::VehiclePlugin {
     parts.description.max_thrust_n = body_.max_thrust_n;
     parts.description.max_body_rate_radps = body_.max_body_rate_radps;
     parts.description.T_world_start = start_of(setup.start);
-    parts.link = mavlink::open_link(options_.link);
-    parts.scans = std::make_unique<mavlink::LidarScans>(lidar::open_lidar(lidar_, "vehicle mavlink"));
+    parts.link = core::opened_by_key("vehicle mavlink", "mavlink.link",
+                                     [this] { return mavlink::open_link(options_.link); });
+    parts.scans =
+        std::make_unique<mavlink::LidarScans>(lidar::open_lidar(lidar_, "vehicle mavlink", "mavlink.lidar"));
     parts.climb_m = setup.climb_m;
     parts.run_dir = setup.run_dir;
+    parts.address = options_.link;
     return std::make_unique<mavlink::MavlinkVehicle>(options_, std::move(parts));
   }
 

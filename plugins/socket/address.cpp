@@ -10,7 +10,8 @@ namespace karst::socket {
 namespace {
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
-  throw core::InputError("address", text, why + "; expected tcp:HOST:PORT, tcp:PORT or unix:PATH");
+  throw core::InputError(text.empty() ? "the address" : text, "",
+                         why + "; expected tcp:HOST:PORT, tcp:PORT or unix:PATH");
 }
 
 }  // namespace

@@ -167,6 +167,11 @@ std::string implausible(const ToCore& message, const core::VehicleDescription& v
   return std::visit(Judge{vehicle}, message);
 }
 
+std::string implausible(const Hello& hello) {
+  constexpr double kMaxClimb_m = 100;
+  return within(hello.climb_m, 0, kMaxClimb_m) ? "" : "climb_m: expected 0 to 100";
+}
+
 std::string implausible(const core::Command& c) {
   if (!finite(c.rates.body_rate_radps) || !std::isfinite(c.rates.thrust_n)) return "rates: is no number";
   const core::Reference& r = c.reference;

@@ -1,4 +1,5 @@
 #include "core_stack/common/error.h"
+#include "core_stack/common/opened_by_key.h"
 #include "core_stack/vehicle/vehicle.h"
 #include "plugins/socket/lockstep_vehicle.h"
 #include "plugins/socket/real_time_vehicle.h"
@@ -36,8 +37,10 @@ class SocketPlugin final : public core::VehiclePlugin {
     hello.seed = setup.seed;
     hello.climb_m = setup.climb_m;
     hello.client = "karst";
-    auto link = std::make_unique<socket::VehicleLink>(socket::parse_address(options_.address), hello,
-                                                      wait_of(options_.connect_timeout_s));
+    auto link = core::opened_by_key("vehicle socket", "socket.address", [&] {
+      return std::make_unique<socket::VehicleLink>(socket::parse_address(options_.address), hello,
+                                                   wait_of(options_.connect_timeout_s));
+    });
     if (lockstep)
       return std::make_unique<socket::LockstepVehicle>(std::move(link), wait_of(options_.answer_timeout_s));
     return std::make_unique<socket::RealTimeVehicle>(

@@ -271,7 +271,10 @@ Hello read_hello(const Frame& frame) {
   std::string problem;
   const auto message = read_message<ToVehicle>(frame, problem);
   if (!message) throw LinkError(problem);
-  return std::get<Hello>(*message);
+  const auto& hello = std::get<Hello>(*message);
+  if (const std::string why = implausible(hello); !why.empty())
+    throw LinkError("the greeting is wrong: " + why);
+  return hello;
 }
 
 /// Whether the client starts the vehicle. Pings are answered before that, too.

@@ -26,6 +26,7 @@
 #include "sdk/evaluation/report/team_report.h"
 #include "sdk/evaluation/team/team_metrics.h"
 #include "sdk/evaluation/team/team_object_figures.h"
+#include "sdk/flight/truth_of_flight.h"
 #include "sdk/terminal/terminal.h"
 
 namespace karst::flight {
@@ -158,10 +159,12 @@ constexpr const char* kTruthFiles[] = {"ground_truth.tum", "truth.csv", "truth_e
 Finishing recorded_finishing(const fs::path& run_dir, Report report) {
   const fs::path file = run_dir / "mission.info";
   std::error_code absent;
-  if (!fs::exists(file, absent)) {
-    print_wrapped(stderr, 7, "karst: %s: is not there: the cave is not known\n", file.c_str());
-    return {"", "", report};
-  }
+  const auto unknown = [report](const std::string& why) {
+    Finishing how{"", "", report};
+    how.problem = why + ": the cave is not known";
+    return how;
+  };
+  if (!fs::exists(file, absent)) return unknown(file.string() + ": is not there");
   try {
     const auto mission = core::read_info(file.string());
     return {mission.get("cave.file", ""),
@@ -170,8 +173,7 @@ Finishing recorded_finishing(const fs::path& run_dir, Report report) {
             {},
             recorded_mesh_keys(file, mission)};
   } catch (const core::InputError& e) {
-    print_wrapped(stderr, 7, "karst: %s: the cave is not known\n", e.what());
-    return {"", "", report};
+    return unknown(e.what());
   }
 }
 
@@ -179,6 +181,7 @@ void take_truth(const fs::path& run_dir, const fs::path& truth, Report report) {
   if (!fs::is_regular_file(truth / "ground_truth.tum"))
     throw core::InputError(truth.string(), "",
                            "holds no ground_truth.tum: is it a folder of karst vehicle serve --truth?");
+  check_same_flight(run_dir, truth);
   const Finishing how = recorded_finishing(truth, report);
   for (const char* file : kTruthFiles) {
     if (!fs::is_regular_file(truth / file)) continue;
@@ -198,7 +201,9 @@ nlohmann::json finish_run(const fs::path& run_dir, const Finishing& how) {
   bool lost_cave = false;
   const evaluation::Truth truth = truth_if_known(run_dir, how, problems, lost_cave);
   nlohmann::ordered_json metrics = evaluation::evaluate_run(run_dir, truth, &run_problems);
-  problems.insert(problems.end(), run_problems.begin(), run_problems.end());
+  if (!how.problem.empty()) problems.insert(problems.begin(), how.problem);
+  for (const std::string& p : run_problems)
+    if (!how.problem.starts_with(p)) problems.push_back(p);  // mission.info is read for both
   if (lost_cave) keep_known(metrics, run_dir);
   for (const std::string& p : problems) print_wrapped(stderr, 7, "karst: %s\n", p.c_str());
   evaluation::write_metrics(run_dir, metrics);
@@ -212,6 +217,7 @@ void finish_team(const fs::path& run_dir, const Finishing& how, nlohmann::ordere
   std::vector<std::string> problems;
   bool lost_cave = false;
   const evaluation::Truth truth = truth_if_known(run_dir, how, problems, lost_cave);
+  if (!how.problem.empty()) problems.insert(problems.begin(), how.problem);
   metrics.update(evaluation::team_map_figures(team, truth));
   evaluation::set_figures(metrics, evaluation::team_object_figures(team, team.problems));
   problems.insert(problems.end(), team.problems.begin(), team.problems.end());  // robots' are reported

@@ -15,14 +15,15 @@ struct Finishing {
   Report report = Report::written;
   std::filesystem::path cave_cache = {};  // folder for data common to all flights of a cave; "": no cache
   core::MeshKeys mesh = {};               // of a cave that is a bare mesh
+  std::string problem = {};               // why the cave is not known; finish_run reports it
 };
 
-/// As mission.info says. One that is damaged is reported on standard error: then the cave is not known.
+/// As mission.info says, with the problem if it is not there or damaged.
 Finishing recorded_finishing(const std::filesystem::path& run_dir, Report report);
 
 /// Completes a run with the ground truth that the vehicle's own process wrote into `truth` (karst vehicle
-/// serve), and evaluates it again. Throws core::InputError if that folder has none, or the run has other
-/// truth already.
+/// serve), and evaluates it again. Throws core::InputError if that folder has none or that of
+/// another flight (truth_of_flight.h), or the run has other truth already.
 void take_truth(const std::filesystem::path& run_dir, const std::filesystem::path& truth, Report report);
 
 /// Writes metrics.json and, if asked, report.html into a run directory; returns the metrics.

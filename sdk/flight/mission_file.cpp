@@ -120,7 +120,44 @@ std::pair<std::string, std::string> split_setting(const std::string& setting) {
   return {setting.substr(0, equals), setting.substr(equals + 1)};
 }
 
+/// As the settings say, or else the mission file.
+std::string vehicle_of(const pt::ptree& tree,
+                       const std::vector<std::pair<std::string, std::string>>& settings) {
+  std::string vehicle = tree.get("vehicle", Mission{}.vehicle);
+  for (const auto& [key, value] : settings)
+    if (key == "vehicle") vehicle = value;
+  return vehicle;
+}
+
+std::vector<std::pair<std::string, std::string>> settings_of(const MissionOverrides& overrides) {
+  std::vector<std::pair<std::string, std::string>> settings;
+  for (const std::string& s : overrides.settings) settings.push_back(split_setting(s));
+  settings.insert(settings.end(), overrides.values.begin(), overrides.values.end());
+  return settings;
+}
+
+/// The same file serves a mission of another vehicle: that one's section has no meaning then. But a file for
+/// this vehicle may mean a section of this vehicle's own, such as simulated_autopilot.simulator.
+void leave_out_others(const Mission& m, const OptionTable& table, pt::ptree& tree) {
+  const bool for_this_vehicle = tree.get("vehicle", "") == m.vehicle;
+  for (const std::string& other : core::vehicles_in(core::plugin_root() / "vehicles")) {
+    if (other == m.vehicle || !tree.get_child_optional(other)) continue;
+    const std::string meant = m.vehicle + "." + other;
+    const bool has = std::any_of(table.rows().begin(), table.rows().end(),
+                                 [&meant](const auto& row) { return row.key.starts_with(meant + "."); });
+    if (for_this_vehicle && has)
+      throw InputError(m.file, other,
+                       "has no effect on the vehicle " + m.vehicle + ": write it as " + meant + ", " +
+                           m.vehicle + " { " + other + " { ... } }");
+    tree.erase(other);
+  }
+}
+
 }  // namespace
+
+std::string named_vehicle(const std::string& file, const MissionOverrides& overrides) {
+  return vehicle_of(file.empty() ? pt::ptree() : core::read_including_info(file), settings_of(overrides));
+}
 
 Mission read_mission(const std::string& file, const MissionOverrides& overrides) {
   Mission m;
@@ -138,10 +175,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   m.policy_selection = take(tree, kSelection).data();
   for (const char* fact : {kPolicyVersion, kKarstVersion}) take(tree, fact);
 
-  std::vector<std::pair<std::string, std::string>> settings;
-  for (const std::string& s : overrides.settings) settings.push_back(split_setting(s));
-  settings.insert(settings.end(), overrides.values.begin(), overrides.values.end());
-
+  const auto settings = settings_of(overrides);
   const auto set_to = [&settings](const char* wanted) {
     return std::any_of(settings.begin(), settings.end(), [&](const auto& s) { return s.first == wanted; });
   };
@@ -157,17 +191,13 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
     throw InputError("--preset", overrides.preset, "names a policy, and --policy one as well");
 
   // The vehicle comes first: its plugin adds its own section to the table.
-  m.vehicle = tree.get("vehicle", m.vehicle);
-  for (const auto& [key, value] : settings)
-    if (key == "vehicle") m.vehicle = value;
+  m.vehicle = vehicle_of(tree, settings);
   m.vehicle_plugin = &core::load_vehicle(m.vehicle, core::plugin_root() / "vehicles");
-  // The same file serves a mission of another vehicle: that one's section has no meaning then.
-  for (const std::string& other : core::vehicles_in(core::plugin_root() / "vehicles"))
-    if (other != m.vehicle) tree.erase(other);
   OptionTable table;
   describe_mission(table, m);
   table.under(m.vehicle, [&m](OptionTable& t) { m.vehicle_plugin->describe_options(t); });
   describe_radio(table, *m.vehicle_plugin);
+  leave_out_others(m, table, tree);
 
   table.read(m.file, tree);
   m.cave = core::beside(file, m.cave);

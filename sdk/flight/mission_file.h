@@ -78,6 +78,9 @@ boost::property_tree::ptree recorded_mission(const Mission& mission,
 /// the expected value and the nearest key.
 Mission read_mission(const std::string& file, const MissionOverrides& overrides);
 
+/// The vehicle that the settings name, or else the mission file, or else the default.
+std::string named_vehicle(const std::string& file, const MissionOverrides& overrides);
+
 /// Every key with unit, range, default and a line of help, for a vehicle.
 std::string mission_help(const std::string& vehicle);
 

@@ -32,10 +32,10 @@ std::optional<core::VoxelMap> whole_map(const fs::path& run_dir, RecoveredMap& o
   return whole ? std::move(map) : std::nullopt;
 }
 
-/// What no other reader misses.
+/// What no other reader misses; mission.info is read when the run is finished.
 void note_missing(const fs::path& run_dir, std::vector<std::string>& notes) {
-  for (const char* name : {"mission.info", "events.jsonl", "telemetry.csv", "trajectory.tum",
-                           "localization.csv", "decisions.csv", "map_growth.bin", core::kMapCellsName}) {
+  for (const char* name : {"events.jsonl", "telemetry.csv", "trajectory.tum", "localization.csv",
+                           "decisions.csv", "map_growth.bin", core::kMapCellsName, "timing.json"}) {
     std::error_code error;
     if (!fs::exists(run_dir / name, error)) notes.push_back(std::string(name) + ": is not there");
   }
@@ -54,6 +54,24 @@ core::VoxelMap rock_of(const evaluation::RunRecord& run) {
 
 }  // namespace
 
+bool is_whole(const fs::path& run_dir) {
+  std::error_code error;
+  for (const char* name : {"mission.info", "telemetry.csv", "trajectory.tum", "map.bt", "map.ot", "map.ply",
+                           "timing.json", "metrics.json"})
+    if (!fs::is_regular_file(run_dir / name, error)) return false;
+  if (fs::exists(run_dir / "run.lock", error)) return false;
+  std::vector<std::string> problems;
+  if (!evaluation::read_json(run_dir / "metrics.json", problems).is_object() ||
+      evaluation::read_settings(run_dir / "mission.info", problems).empty())
+    return false;
+  for (const char* map : {"map.bt", "map.ot"}) try {
+      core::read_octomap((run_dir / map).string());
+    } catch (const core::InputError&) {
+      return false;
+    }
+  return evaluation::read_run(run_dir).last<core::event::Outcome>().has_value();
+}
+
 RecoveredMap recover_map(const fs::path& run_dir) {
   if (evaluation::is_team(run_dir))
     throw core::InputError(run_dir.string(), "", "is the run of a team: karst report evaluates what it kept");
@@ -71,7 +89,7 @@ RecoveredMap recover_map(const fs::path& run_dir) {
     }
     return out;
   }
-  if (run.setting("map.resolution").empty())
+  if (!run.settings.empty() && run.setting("map.resolution").empty())
     out.notes.emplace_back("mission.info: has no map.resolution; 0.2 m is assumed");
   if (const auto map =
           evaluation::read_map_cells(run_dir / core::kMapCellsName, run.map_resolution_m(), out.notes)) {

@@ -6,6 +6,10 @@
 
 namespace karst::flight {
 
+/// Whether the flight came to its end and everything was made of it: there is nothing to recover. The report
+/// is made only if it is asked for, and does not count.
+bool is_whole(const std::filesystem::path& run_dir);
+
 struct RecoveredMap {
   std::vector<std::filesystem::path> written;
   std::vector<std::string> notes;  // what is missing, and what was left out

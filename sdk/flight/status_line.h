@@ -1,6 +1,8 @@
 // Status output during a flight: for one vehicle a line that is updated on a terminal, elsewhere a new line
 // every half minute of flight; for a team a new line every half minute.
 //
+// What the vehicle waits for gets a line of its own, in full, whenever it changes.
+//
 // In real time a thread of its own prints: a terminal that is stopped (Ctrl-S), or a pipe that nobody reads,
 // must not hold up the loop. What is not printed yet when the next comes is left out.
 #pragma once
@@ -26,13 +28,15 @@ class StatusLine {
  private:
   void show_alone(const core::MissionStatus& status);
   void print_all();
+  void print(std::string reason, std::string status);
 
   bool renews_;                  // updates one line, on a terminal
   core::InheritingMutex mutex_;  // of what follows
   core::Condition wake_;
-  std::string next_;
+  std::string reason_, next_;  // to be printed
   bool over_ = false;
-  std::thread printer_;  // in real time
+  std::string waits_for_;  // as shown last
+  std::thread printer_;    // in real time
 };
 
 }  // namespace karst::flight

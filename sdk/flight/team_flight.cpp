@@ -171,7 +171,7 @@ RobotResult TeamFlight::result_of(const Lockstep& flight, std::size_t robot, Tim
   r.end_s = core::seconds(state.ended_at.value_or(now));
   r.exploration_time_s = core::seconds(state.explored_for);
   r.homing_reason = state.homing_reason;
-  r.battery_left = state.status.battery_fraction;
+  r.battery_left = state.status.battery ? state.status.battery->fraction_left : 1;  // full before its start
   r.connected = std::find(connected.begin(), connected.end(), member.self()) != connected.end();
   r.records = member.gossip().held(member.self()).first();
   r.records_at_base = base_.gossip().held(member.self()).first();

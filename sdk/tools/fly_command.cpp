@@ -154,7 +154,8 @@ void print_flight(const flight::FlightOutcome& outcome, const flight::FlightRequ
             number("mean_speed_mps", "%.2f m/s").c_str());
   print_out("  explored volume  %s", number("explored_volume_m3", "%.0f m³").c_str());
   if (!metrics["coverage"].is_null())
-    print_out(" (%.1f %% of what can be reached)", 100 * metrics["coverage"].get<double>());
+    print_out(" (%.1f %% of what can be reached%s)", 100 * metrics["coverage"].get<double>(),
+              metrics.contains("coverage_of") ? " in the region" : "");
   print_out("\n  least clearance  %s\n", number("min_clearance_m", "%.2f m").c_str());
   print_objects(metrics);
   if (outcome.real_time) print_real_time(*outcome.real_time);
@@ -257,7 +258,8 @@ flight::FlightRequest request_of(const FlyArguments& args, const flight::Mission
 
 int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
   if (args.keys) {
-    std::fputs(flight::mission_help("simulator").c_str(), stdout);
+    std::fputs(flight::mission_help(flight::named_vehicle(args.mission_file, args.overrides)).c_str(),
+               stdout);
     return 0;
   }
   const auto names_vehicle = [](const std::string& setting) { return setting.starts_with("vehicle="); };
@@ -387,7 +389,10 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
                     "run the policy in karst's own process, for debuggers and sanitizers; a crash then ends "
                     "the flight: " +
                         core::doc_path("docs/isolation.md"));
-  fly_app->add_flag("--keys", args->keys, "list every key of a mission file and end");
+  fly_app->add_flag("--keys", args->keys,
+                    "list every key of a mission file and end: of the simulator, or of the vehicle that the "
+                    "mission or --set "
+                    "names");
   fly_app->callback([args, choose = std::move(choose_policy)] {
     host::take_policy_file(args->overrides.policy, args->plugins);
     if (const int code = fly(*args, choose); code != 0) throw CLI::RuntimeError(code);

@@ -1,6 +1,7 @@
 #include "sdk/tools/preflight_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -9,6 +10,8 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/shell_word.h"
+#include "core_stack/vehicle/load_vehicle.h"
+#include "plugins/simulator/simulator_options.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/mission_file.h"
@@ -98,6 +101,21 @@ int run_of_vehicle(const PreflightArguments& args, bool named_policy) {
   real.json = args.json;
   real.quiet = args.quiet;
   return vehicle_preflight(real) ? 0 : kNoGo;
+}
+
+/// A vehicle that is simulated, or a plugin. Throws InputError naming what there is.
+void check_vehicle(const std::string& name) {
+  const std::vector<std::string> simulated = core::all_names<sim::VehiclePreset>();
+  if (name.empty() || is_vehicle(name) || std::count(simulated.begin(), simulated.end(), name) > 0) return;
+  const auto list = [](const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& n : names) text += (text.empty() ? "" : ", ") + n;
+    return text;
+  };
+  throw InputError("karst preflight", "--vehicle",
+                   "no vehicle \"" + name + "\" here; there is: " + list(simulated) +
+                       " (simulator.vehicle); and to listen to, the plugins " +
+                       list(core::vehicles_in(core::plugin_root() / "vehicles")));
 }
 
 int run(const PreflightArguments& args) {
@@ -207,6 +225,7 @@ void add_preflight_command(CLI::App& app) {
   preflight_app->add_flag("--quiet", args->quiet, "no progress on standard error");
   preflight_app->callback([args, preflight_app] {
     host::take_policy_file(args->overrides.policy, args->look.plugins);
+    check_vehicle(args->vehicle);
     const bool named_policy = preflight_app->count("--policy") > 0;
     const bool of_cave =
         !is_vehicle(args->vehicle) && (args->vehicle.empty() || !args->overrides.cave.empty());

@@ -33,6 +33,11 @@ void add_recover_command(CLI::App& app) {
     namespace fs = std::filesystem;
     const fs::path run = args->run;
     if (!fs::is_directory(run)) throw core::InputError(args->run, "", "is not a directory");
+    if (flight::is_whole(run)) {
+      print_out("%s: the flight is whole, and nothing was changed; karst report writes its report anew\n",
+                run.c_str());
+      return;
+    }
     const flight::RecoveredMap map = flight::recover_map(run);
     for (const std::string& note : map.notes) print_wrapped(stderr, 7, "karst: %s\n", note.c_str());
     for (const fs::path& file : map.written) print_out("%s\n", file.c_str());

@@ -85,6 +85,8 @@ bool vehicle_preflight(const VehiclePreflightArguments& args) {
       preflight::measure(record, {.climb_m = mission.core.mission.takeoff_height_m,
                                   .home_reserve_s = mission.core.mission.home_reserve_s,
                                   .loam = mission.core.localization.loam});
+  m.plugin = mission.vehicle;
+  m.mission_file = args.mission_file;
   m.clock = how.clock;
   m.machine = machine;
   const std::vector<preflight::Check> checks = preflight::checks_of(m);

@@ -88,6 +88,13 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
 
 void check_region(const std::string& source, const CoreOptions& o, const VehicleDescription& vehicle) {
   if (!o.region) return;
+  // Home is the first hover: the path there from the ground, and about it the room for a path at all.
+  if (const double least_m = o.mission.takeoff_height_m + o.planning.clearance_m;
+      o.region->limits().max_home_m.value_or(least_m) < least_m)
+    throw InputError(source, "region.max_home_distance",
+                     format_text("is %.2f m, and the vehicle could fly nowhere: expected at least %.2f m "
+                                 "(mission.takeoff_height and planning.clearance), or 0 for no limit",
+                                 *o.region->limits().max_home_m, least_m));
   const Vec3& start = vehicle.T_world_start.position;
   const auto require = [&](const Vec3& p, double least_m, const char* what) {
     const double depth_m = o.region->depth_m(p);

@@ -119,9 +119,9 @@ CycleInput Exploration::cycle_input(const RouteStart& start, Joins joins) {
   input.direction =
       velocity.norm() > 0.2 ? velocity.normalized() : Vec3(std::cos(heading_rad), std::sin(heading_rad), 0);
   input.seconds_left = parts_.endurance.seconds_left(input.now);
-  const BatteryStatus& battery = parts_.endurance.battery();
-  input.battery_fraction = battery.fraction_left;
-  input.battery_seconds_left = battery.seconds_left;
+  const auto& battery = parts_.endurance.battery();
+  input.battery_fraction = battery ? battery->fraction_left : 1;  // a policy is promised a number
+  input.battery_seconds_left = parts_.endurance.battery_seconds_left();
   input.mission_seconds_left = parts_.endurance.mission_seconds_left(input.now);
   input.flown_length_m = parts_.flown_path.length_m();
   input.flown_path = parts_.flown_path.points();

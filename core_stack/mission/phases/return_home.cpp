@@ -63,7 +63,7 @@ void ReturnHome::on_estimate(const HomeEstimate& estimate) {
   const double slack_s = home_slack_s(seconds_left, estimate.time_s, o.home_margin, o.home_reserve_s);
   if (leads_too_far(estimate)) return;
   if (!return_trigger_.due(slack_s)) return;
-  const bool by_time = seconds_left < parts_.endurance.battery().seconds_left;
+  const bool by_time = seconds_left < parts_.endurance.battery_seconds_left();
   onboard_.recorder.write(onboard_.now(), event::Homing{by_time ? "time limit" : "battery", distance_m_,
                                                         seconds_left, seconds_left - slack_s});
   begin(by_time ? "the time allowed only just suffices for the way home"

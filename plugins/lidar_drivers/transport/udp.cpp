@@ -41,6 +41,11 @@ sockaddr_in end_point(std::uint32_t address, std::uint16_t port) {
 
 }  // namespace
 
+bool is_address(const std::string& text) {
+  in_addr address{};
+  return inet_pton(AF_INET, text.c_str(), &address) == 1;
+}
+
 Socket::~Socket() {
   if (descriptor_ >= 0) close(descriptor_);
 }

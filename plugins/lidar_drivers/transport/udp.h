@@ -21,6 +21,9 @@ class Socket {
   int descriptor_;
 };
 
+/// Whether `text` is an address such as 192.168.1.10.
+bool is_address(const std::string& text);
+
 /// Receives on a port of this host. The system's buffer is the queue, and bounds it: when nobody receives, it
 /// drops the newest datagrams, and the sensor's counters tell how many.
 class UdpReceiver final : public PacketSource {

@@ -61,9 +61,10 @@ CaveOfFile read_cave_file(const std::string& path) {
 
 CaveOfFile read_cave(const std::string& path, const core::MeshKeys& keys) {
   if (path.empty())
-    throw InputError("cave", "",
-                     "no cave given: name a cave's .info file or a mesh, with --cave FILE or as cave.file of "
-                     "the mission; `karst cave generate` makes one");
+    throw InputError(
+        "cave", "",
+        "no cave given: name a cave's .info file or a mesh, as cave.file of the mission or by --set "
+        "cave.file=FILE; `karst cave generate` makes one");
   const bool is_cave_file = std::filesystem::path(path).extension() == ".info";
   if (!std::filesystem::exists(path))
     throw InputError(path, "",

@@ -132,6 +132,12 @@ ErrorStatistics map_error(const RunRecord& run, const core::VoxelMap* map, const
   return statistics_of(map_errors(centres, truth.distance_to_rock));
 }
 
+/// Only the keys of a region that limits something are recorded.
+bool flies_in_region(const RunRecord& run) {
+  return std::any_of(run.settings.begin(), run.settings.end(),
+                     [](const Setting& s) { return s.key.starts_with("region."); });
+}
+
 }  // namespace
 
 ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
@@ -171,6 +177,7 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   m["explored_volume_m3"] = value(volume.explored_m3);
   m["reachable_volume_m3"] = value(truth.reachable_volume_m3);
   m["coverage"] = value(volume.coverage);
+  if (flies_in_region(run)) m["coverage_of"] = "region";
   m["horizon_s"] = value(horizon);
   m["coverage_auc"] = value(horizon ? mean_coverage(curve, *horizon) : std::nullopt);
   for (const int percent : {25, 50, 75})

@@ -45,7 +45,9 @@ std::string achievement_of(const ordered_json& metrics, const Ending& ending) {
   std::string text = who(metrics, ending);
   if (volume_m3) {
     text += part(" explored %.0f m³", volume_m3) + (cave.empty() ? "" : " of " + cave);
-    if (coverage) text += part(" (%.1f %% of what can be reached)", 100 * *coverage);
+    if (coverage)
+      text += part(" (%.1f %% of what can be reached", 100 * *coverage) +
+              (text_of(metrics, "coverage_of") == "region" ? " in the region)" : ")");
     text += part(" in %.0f s", time_s);
   } else {
     text += " flew" + (cave.empty() ? "" : " in " + cave) + part(" for %.0f s", time_s);

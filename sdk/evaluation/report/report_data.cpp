@@ -95,6 +95,7 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   d["frontiers"] = scene_frontiers(run, problems);
   d["plans"] = scene_plans(run, problems);
   d["objects"] = scene_objects(run);
+  d["region"] = scene_region(run, problems);
   d["drawings"] = scene_drawings(run, problems);
   d["pictures"] = report_pictures(run.directory, problems);
   d["problems"] = problems;

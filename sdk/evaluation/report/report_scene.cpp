@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
+#include "core_stack/common/error.h"
 #include "core_stack/common/rounded.h"
+#include "core_stack/mapping/region/region_keys.h"
 #include "sdk/evaluation/page/base64.h"
 #include "sdk/evaluation/report/cloud.h"
 
@@ -29,6 +32,37 @@ ordered_json rounded(const std::vector<Vec3>& points) {
   for (const Vec3& p : points)
     if (p.allFinite()) all.push_back(rounded(p));
   return all;
+}
+
+struct Heights {
+  double low_m = 0, high_m = 0;
+};
+
+/// Of the map, and of the flown path.
+Heights heights_of(const RunRecord& run) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Heights h{kInfinity, -kInfinity};
+  const auto add = [&h](double z_m) { h = {std::min(h.low_m, z_m), std::max(h.high_m, z_m)}; };
+  for (const OccupiedSpan& s : run.growth) {
+    add(s.key.z * run.map_resolution_m());
+    add((s.key.z + 1) * run.map_resolution_m());
+  }
+  for (const StampedPose& p : run.estimate) add(p.T_world_body.position.z());
+  return h.low_m <= h.high_m ? h : Heights{};
+}
+
+/// A body above or below the whole map keeps its closed end.
+ordered_json body_of(const core::Prism& prism, const char* keep, const Heights& map) {
+  const bool closed_below = std::isfinite(prism.low_m), closed_above = std::isfinite(prism.high_m);
+  const double low_m = closed_below ? prism.low_m : std::min(map.low_m, prism.high_m);
+  const double high_m = closed_above ? prism.high_m : std::max(map.high_m, prism.low_m);
+  ordered_json outline = ordered_json::array();
+  for (const Eigen::Vector2d& p : prism.outline)
+    outline.push_back({core::to_hundredths(p.x()), core::to_hundredths(p.y())});
+  return {{"keep", keep},
+          {"outline", std::move(outline)},
+          {"low", core::to_hundredths(low_m)},
+          {"high", core::to_hundredths(high_m)}};
 }
 
 struct Moment {
@@ -142,6 +176,22 @@ ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problem
     moments.push_back({e["t"], std::move(points), count});
   }
   return thinned(std::move(moments), "plans", problems);
+}
+
+ordered_json scene_region(const RunRecord& run, std::vector<std::string>& problems) {
+  core::RegionKeys keys{run.setting("region.keep_in"), run.setting("region.keep_out")};
+  if (keys.empty()) return nullptr;
+  try {
+    const core::FlightRegion::Limits limits = core::region_of("mission.info", keys)->limits();
+    const Heights heights = heights_of(run);
+    ordered_json bodies = ordered_json::array();
+    if (limits.keep_in) bodies.push_back(body_of(*limits.keep_in, "in", heights));
+    for (const core::Prism& p : limits.keep_out) bodies.push_back(body_of(p, "out", heights));
+    return bodies;
+  } catch (const core::InputError& e) {
+    problems.emplace_back(e.what());
+    return nullptr;
+  }
 }
 
 ordered_json scene_objects(const RunRecord& run) {

@@ -30,6 +30,9 @@ nlohmann::ordered_json scene_track(const std::vector<StampedPose>& poses, std::s
 nlohmann::ordered_json scene_frontiers(const RunRecord& run, std::vector<std::string>& problems);
 /// Paths planned as [[t, [[x, y, z], ...]], ...].
 nlohmann::ordered_json scene_plans(const RunRecord& run, std::vector<std::string>& problems);
+/// The bodies of the region that the vehicle may fly in: [{keep: "in" or "out", outline: [[x, y], ...], low,
+/// high}, ...]; an open height ends with the map. null without a region.
+nlohmann::ordered_json scene_region(const RunRecord& run, std::vector<std::string>& problems);
 /// Objects of interest found by each time: [[t, [[x, y, z, what], ...]], ...], one entry per change.
 nlohmann::ordered_json scene_objects(const RunRecord& run);
 /// The policy's drawings by decision: [[t, [{shape, points, rgb, text}, ...]], ...].

@@ -63,6 +63,7 @@ struct MachineFacts {
 };
 
 struct VehicleMeasurements {
+  std::string plugin, mission_file;  // what was listened to, by which mission; "": the defaults of a mission
   core::VehicleDescription vehicle;
   double rest_s = 0, motion_s = 0;
   std::vector<SensorTimeline> sensors;
@@ -87,7 +88,7 @@ struct MeasureOptions {
   core::LoamOptions loam;
 };
 
-/// All but `clock` and `machine`.
+/// All but `plugin`, `mission_file`, `clock` and `machine`.
 VehicleMeasurements measure(const VehicleRecord& record, const MeasureOptions& options);
 
 /// `run_folder` may be to be created.

@@ -20,7 +20,7 @@ constexpr const char* kChecklistStyle = R"css(
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 186mm; padding: 5mm 4mm; color: #111; background: #fff;
   font: 9pt/1.3 system-ui, "DejaVu Sans", sans-serif; overflow-wrap: anywhere; }
-h1 { font-size: 14pt; margin: 0 0 1mm; }
+h1 { font-size: 14pt; margin: 0 0 1mm; } h1 + p { margin: 0; }
 h2 { font-size: 10pt; margin: 2.5mm 0 1mm; border-bottom: .3mm solid #111; }
 .verdict { font-size: 13pt; font-weight: 700; padding: 1.2mm 3mm; border: .6mm solid #111; margin: 1.5mm 0; }
 .no_go { border-width: 1.4mm; }
@@ -89,8 +89,9 @@ std::string plots_of(const VehicleMeasurements& m) {
 
 std::string vehicle_page(const VehicleMeasurements& m, const std::vector<Check>& checks) {
   const bool go = verdict_of(checks) != Outcome::no_go;
-  std::string body = "<h1>Preflight: vehicle " + xml_text(m.vehicle.name) + "</h1>\n<p class=\"verdict " +
-                     (go ? "go" : "no_go") + "\">" + xml_text(verdict_text(checks)) + "</p>\n";
+  std::string body = "<h1>Preflight: vehicle " + xml_text(m.vehicle.name) + "</h1>\n<p>By " +
+                     xml_text(source_text(m)) + ".</p>\n<p class=\"verdict " + (go ? "go" : "no_go") + "\">" +
+                     xml_text(verdict_text(checks)) + "</p>\n";
   body += list_of(checks, Outcome::no_go, "Reasons against it");
   body += list_of(checks, Outcome::watch, "Watch for");
   body += "<h2>For a person to check</h2>\n<ul class=\"boxes\">\n";

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core_stack/common/format_text.h"
+#include "sdk/preflight/vehicle/median.h"
 
 namespace karst::preflight {
 namespace {
@@ -161,6 +162,24 @@ bool gyroscope_is_turned(const MotionFigures& motion) { return motion.gyroscope_
 
 constexpr double kLeastRate_radps = 0.1;  // root mean square, about each axis
 
+/// What it turned faster than for a quarter of the time. By the sensor that shows more: either may be dead.
+/// A quantile, since scan matching goes wrong now and then. Nothing if neither sensor shows anything.
+std::optional<double> turn_rate_radps(const MotionFigures& motion) {
+  constexpr double kThreeQuarters = 0.75;
+  std::optional<double> greatest;
+  for (const auto* rates : {&motion.gyroscope_rates, &motion.lidar_rates}) {
+    std::vector<double> radps;
+    for (const TurnRate& r : *rates)
+      if (std::isfinite(r.radps)) radps.push_back(r.radps);
+    if (!radps.empty()) greatest = std::max(greatest.value_or(0), quantile(std::move(radps), kThreeQuarters));
+  }
+  return greatest;
+}
+
+bool hardly_turned(const MotionFigures& motion) {
+  return turn_rate_radps(motion).value_or(kLeastRate_radps) < kLeastRate_radps;
+}
+
 void judge_mounting(const HandEye& h, const MotionFigures& motion, Judge& judge) {
   const Eigen::Matrix3d axes = nearest_axis_map(h.map);
   const double error_deg = h.error_rad.norm() / kDegree, sigma_deg = h.sigma_rad / kDegree;
@@ -193,6 +212,15 @@ void judge_motion(const VehicleMeasurements& m, Judge& judge) {
     return;
   }
   const MotionFigures& motion = *m.motion;
+  if (hardly_turned(motion)) {  // all else would compare noise with noise
+    judge.add(
+        m.vehicle.lidar ? Part::lidar : Part::imu, "turned by hand",
+        format_text("hardly: %.1f deg/s", *turn_rate_radps(motion) / kDegree),
+        format_text("at least %.1f deg/s about each axis", kLeastRate_radps / kDegree), Outcome::no_go,
+        "repeat; when the terminal asks for it, take it into your hands, and roll it, nod it and turn it, "
+        "each several times by 30 deg and more. Mounting, delays and axes were not judged");
+    return;
+  }
   judge.add(Part::imu, "samples at the limit of its range", format_text("%.1f %%", 100 * motion.clipped), "0",
             watch_if(motion.clipped > 0.001), "set a larger range, or turn it more gently");
   judge.add(Part::imu, "axes of the gyroscope, by gravity",
@@ -281,7 +309,7 @@ void judge_compass(const CompassFigures& c, const std::optional<MotionFigures>& 
             "near the poles there is no heading; elsewhere calibrate the compass");
   judge.add(Part::compass, "noise", format_text("%.2f uT", c.noise_ut), "at most 2 uT",
             watch_if(c.noise_ut > 2), "move it away from power cables");
-  if (!motion || (!c.by_gyroscope && !c.by_lidar)) return;
+  if (!motion || hardly_turned(*motion) || (!c.by_gyroscope && !c.by_lidar)) return;
   judge.add(Part::compass, "strength while turned", format_text("varies by %.1f %%", 100 * c.strength_spread),
             "at most 10 %", watch_if(c.strength_spread > 0.1),
             "calibrate the compass: the vehicle's iron shows");

@@ -77,8 +77,13 @@ std::string verdict_text(const std::vector<Check>& checks) {
   return "GO";
 }
 
+std::string source_text(const VehicleMeasurements& m) {
+  return "plugin " + m.plugin + ", " +
+         (m.mission_file.empty() ? "without a mission file: the defaults" : "mission " + m.mission_file);
+}
+
 std::string checks_text(const VehicleMeasurements& m, const std::vector<Check>& checks) {
-  std::string out = verdict_text(checks) + ": vehicle " + m.vehicle.name +
+  std::string out = verdict_text(checks) + ": vehicle " + m.vehicle.name + " (" + source_text(m) + ")" +
                     core::format_text(", listened to for %.0f s at rest", m.rest_s) +
                     (m.motion ? core::format_text(" and %.0f s in motion", m.motion_s) : "") + "\n";
   out += with_outcome(checks, Outcome::no_go, "Reasons:\n");
@@ -95,6 +100,8 @@ std::string checks_text(const VehicleMeasurements& m, const std::vector<Check>& 
 ordered_json to_json(const VehicleMeasurements& m, const std::vector<Check>& checks) {
   ordered_json j{{"schema", "karst.vehicle_preflight/1"},
                  {"vehicle", m.vehicle.name},
+                 {"plugin", m.plugin},
+                 {"mission_file", m.mission_file.empty() ? ordered_json() : ordered_json(m.mission_file)},
                  {"verdict", verdict_of(checks) == Outcome::no_go ? "no_go" : "go"},
                  {"rest_s", m.rest_s},
                  {"motion_s", m.motion_s}};

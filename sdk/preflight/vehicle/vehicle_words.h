@@ -14,6 +14,9 @@ std::string verdict_text(const std::vector<Check>& checks);
 /// What passed of a part, in one line: a list of all checks is long.
 std::string passed_text(const std::vector<Check>& checks, Part part);
 
+/// What was listened to: "plugin mavlink, mission cave.info".
+std::string source_text(const VehicleMeasurements& m);
+
 /// The verdict, what is wrong with what to do, what passed, and what only a person can check.
 std::string checks_text(const VehicleMeasurements& m, const std::vector<Check>& checks);
 

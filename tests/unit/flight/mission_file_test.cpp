@@ -265,6 +265,38 @@ TEST(MissionFile, TheHelpsExampleIsAccepted) {
 }
 
 // One had to read the sources.
+MissionOverrides with_setting(const std::string& setting) {
+  MissionOverrides overrides;
+  overrides.settings = {setting};
+  return overrides;
+}
+
+// It was silently ignored.
+TEST(MissionFile, ASectionOfAnotherVehicleIsRefusedWhereThisOneHasItsOwn) {
+  const std::string text = "vehicle simulated_autopilot\nsimulator { battery_minutes \"8 min\" }\n";
+  const std::string error = error_of("autopilot.info", text);
+  EXPECT_TRUE(holds(error, "autopilot.info: simulator: ")) << error;
+  EXPECT_TRUE(holds(error, "simulated_autopilot.simulator")) << error;
+  EXPECT_EQ(error_of("autopilot.info",
+                     "vehicle simulated_autopilot\nsimulated_autopilot { simulator { "
+                     "battery_minutes \"8 min\" } }\n"),
+            "accepted");
+  // A file for another vehicle may still be flown with this one.
+  EXPECT_EQ(error_of("other.info", "simulator { battery_minutes \"8 min\" }\n",
+                     with_setting("vehicle=simulated_autopilot")),
+            "accepted");
+  EXPECT_EQ(error_of("other.info", "vehicle simulator\nmavlink { link udp:14540 }\n"), "accepted");
+}
+
+TEST(MissionHelp, IsOfTheVehicleThatTheMissionNames) {
+  const std::string file = written("mavlink.info", "vehicle mavlink\n");
+  EXPECT_EQ(named_vehicle("", {}), "simulator");
+  EXPECT_EQ(named_vehicle(file, {}), "mavlink");
+  EXPECT_EQ(named_vehicle(file, with_setting("vehicle=simulated_autopilot")), "simulated_autopilot");
+  EXPECT_TRUE(holds(mission_help("mavlink"), "mavlink.link"));
+  EXPECT_FALSE(holds(mission_help("mavlink"), "simulator.battery_minutes"));
+}
+
 TEST(MissionHelp, ListsTheKeysOfPolicyAuto) {
   const std::string help = mission_help("simulator");
   for (const char* key : {"description", "survey", "survey_start", "results", "metric = coverage_auc",

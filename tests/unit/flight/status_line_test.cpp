@@ -9,6 +9,34 @@
 namespace karst::flight {
 namespace {
 
+std::string shown(const std::vector<core::MissionStatus>& all) {
+  ::testing::internal::CaptureStderr();
+  StatusLine line(1);
+  for (const core::MissionStatus& s : all) line.show(s.time, {s});
+  return ::testing::internal::GetCapturedStderr();
+}
+
+TEST(StatusLine, ShowsABatteryThatHasSaidNothingAsUnknown) {
+  core::MissionStatus status;
+  status.time = 30 * core::kSecond;
+  EXPECT_EQ(shown({status}), "standby   0:30  battery unknown                  0 m³   0.0 m/s  \n");
+  status.battery = core::BatteryStatus{0, 40, 0.8, 100, 605};
+  EXPECT_EQ(shown({status}), "standby   0:30  battery  80 % (10:05 left)       0 m³   0.0 m/s  \n");
+}
+
+TEST(StatusLine, GivesWhatTheVehicleWaitsForALineWheneverItChanges) {
+  core::MissionStatus status;
+  const std::string long_reason = "waits: " + std::string(80, 'x') + "\033";
+  std::vector<core::MissionStatus> all;
+  for (const std::string& reason :
+       {std::string("waits: not armed"), std::string("waits: not armed"), std::string(), long_reason}) {
+    status.time += core::kSecond;
+    status.waits_for = reason;
+    all.push_back(status);
+  }
+  EXPECT_EQ(shown(all), "waits: not armed\nwaits: " + std::string(80, 'x') + "?\n");
+}
+
 /// A stopped terminal (Ctrl-S) is like a pipe that is full: who writes waits.
 TEST(StatusLine, InRealTimeAStoppedTerminalDoesNotHoldUpTheLoop) {
   std::array<int, 2> pipe_ends;

@@ -108,7 +108,7 @@ TEST(Receivers, TheQueueIsBounded) {
 
 std::string refusal(const LidarDriverOptions& o) {
   try {
-    open_lidar(o, "mission.info");
+    open_lidar(o, "mission.info", "mavlink.lidar");
     return "taken";
   } catch (const core::InputError& e) {
     return e.what();
@@ -116,25 +116,28 @@ std::string refusal(const LidarDriverOptions& o) {
 }
 
 TEST(Receivers, OptionsThatCannotBeAreRefusedWithTheirReason) {
-  EXPECT_EQ(open_lidar({}, "mission.info"), nullptr);
+  EXPECT_EQ(open_lidar({}, "mission.info", "mavlink.lidar"), nullptr);
   LidarDriverOptions o;
   o.unit = LidarUnit::ouster;
-  EXPECT_EQ(
-      refusal(o),
-      "mission.info: lidar.metadata: is needed for an Ouster sensor: its beams differ from unit to unit");
+  EXPECT_EQ(refusal(o),
+            "mission.info: mavlink.lidar.metadata: is needed for an Ouster sensor: its beams differ from "
+            "unit to unit");
   o.metadata = "/nowhere/metadata.json";
-  EXPECT_NE(refusal(o).find("/nowhere/metadata.json"), std::string::npos);
+  EXPECT_TRUE(refusal(o).starts_with("mission.info: mavlink.lidar.metadata: /nowhere/metadata.json"))
+      << refusal(o);
   o.mount = "0 0 1 0 0";
-  EXPECT_NE(refusal(o).find("mission.info: lidar.mount: is not"), std::string::npos);
+  EXPECT_NE(refusal(o).find("mission.info: mavlink.lidar.mount: is not"), std::string::npos);
   LidarDriverOptions livox;
   livox.unit = LidarUnit::livox_mid360;
   livox.address = "nobody";
   livox.port = 47311;
-  EXPECT_EQ(refusal(livox), "nobody: is not an address such as 192.168.1.10");
+  EXPECT_EQ(refusal(livox),
+            "mission.info: mavlink.lidar.address: \"nobody\" is not an address such as 192.168.1.10");
   UdpReceiver first({.port = 0});
   livox.address = "";
   livox.port = first.port();
-  EXPECT_EQ(refusal(livox), "UDP port " + std::to_string(first.port()) + ": Address already in use");
+  EXPECT_EQ(refusal(livox), "mission.info: mavlink.lidar.port: UDP port " + std::to_string(first.port()) +
+                                ": Address already in use");
 }
 
 TEST(Receivers, AnOusterIsOpenedByItsMetadata) {
@@ -145,7 +148,7 @@ TEST(Receivers, AnOusterIsOpenedByItsMetadata) {
   const std::uint16_t port = UdpReceiver({.port = 0}).port();  // free a moment ago
   LidarDriverOptions o;
   o.unit = LidarUnit::ouster, o.metadata = file.string(), o.port = port, o.mount = "0 0 0 180 0 0";
-  const auto receiver = open_lidar(o, "mission.info");
+  const auto receiver = open_lidar(o, "mission.info", "mavlink.lidar");
   std::filesystem::remove(file);
   EXPECT_LT((receiver->model()->T_body_lidar * core::Vec3(0, 0, 1) - core::Vec3(0, 0, -1.03618)).norm(),
             1e-9);

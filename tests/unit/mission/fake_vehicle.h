@@ -56,7 +56,7 @@ class FakeVehicle final : public Vehicle {
   }
 
   // What a test may change in flight.
-  bool imu_works = true, pose_sensor_works = true, lidar_works = true;
+  bool imu_works = true, pose_sensor_works = true, lidar_works = true, battery_speaks = true;
   double battery_s = 120;                          // left now
   double load_kg = 0;                              // that the description does not know of
   Vec3 wind_push_mps2 = Vec3::Zero();              // world frame
@@ -95,7 +95,7 @@ class FakeVehicle final : public Vehicle {
     if (imu_works) sink.on_imu({now, specific_force, rate});
     if (pose_sensor_works && now % (50 * kMillisecond) == 0) sink.on_pose({now, pose_});
     if (lidar_works && now % (200 * kMillisecond) == 0) sink.on_lidar(scan(now));
-    if (now % (500 * kMillisecond) == 0) {
+    if (battery_speaks && now % (500 * kMillisecond) == 0) {
       BatteryStatus battery;
       battery.stamp = now;
       battery.seconds_left = battery_s;

@@ -556,6 +556,51 @@ TEST_F(MissionControlTest, DoesNotTakeOffBeforeTheVehiclesChecksHold) {
             Texts{"it waits on the ground: COM_OF_LOSS_T must be at most 1 s, and is 5 s"});
 }
 
+// The terminal said "standby" alone.
+TEST_F(MissionControlTest, TellsItsOperatorWhatItWaitsFor) {
+  vehicle.steered_by(Authority::pilot);
+  vehicle.checked = {{"COM_OF_LOSS_T", "at most 1 s", "5 s", false}};
+  Texts waits;
+  fly(
+      [&](MissionControl& mission) {
+        const TimeNs now = executive.now();
+        if (now == kSecond / 2) mission.on_authority(now, Authority::pilot, "no autopilot yet at udp:14540");
+        if (now == 5 * kSecond) mission.on_authority(now, Authority::pilot, "not armed");
+        if (now == 10 * kSecond) mission.on_authority(now, Authority::core, "mode offboard");
+        if (now == 15 * kSecond) vehicle.checked.front().holds = true;
+        if (now == 25 * kSecond) {
+          vehicle.pilot_rates = hold(vehicle);
+          mission.on_authority(now, Authority::pilot, "mode stabilized");
+        }
+        if (vehicle.pilot_rates) vehicle.pilot_rates = hold(vehicle);
+        if (now == 28 * kSecond) {
+          vehicle.pilot_rates.reset();
+          mission.on_authority(now, Authority::core, "mode offboard");
+        }
+      },
+      [&](const MissionStatus& status) {
+        if (waits.empty() || waits.back() != status.waits_for) waits.push_back(status.waits_for);
+        return true;
+      });
+  EXPECT_EQ(waits, (Texts{"waits: no autopilot yet at udp:14540", "waits: not armed",
+                          "waits: COM_OF_LOSS_T must be at most 1 s, and is 5 s", "",
+                          "the pilot steers: mode stabilized", ""}));
+}
+
+// It was counted as full.
+TEST_F(MissionControlTest, ABatteryThatHasSaidNothingIsUnknown) {
+  vehicle.battery_speaks = false;
+  options.mission.max_flight_time_s = 60;
+  const MissionResult result =
+      fly([](MissionControl&) {}, [](const MissionStatus& status) { return !status.battery; });
+  EXPECT_EQ(result.outcome, MissionOutcome::landed) << result.reason;
+  std::ifstream in(run / "telemetry.csv");
+  std::string head, row;
+  std::getline(in, head);
+  std::getline(in, row);
+  EXPECT_NE(row.find(",nan,nan,"), std::string::npos) << row;
+}
+
 TEST_F(MissionControlTest, LandedByTheAutopilotIsAborted) {
   bool failsafe = false;
   const MissionResult result = fly([&](MissionControl& mission) {

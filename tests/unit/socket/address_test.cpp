@@ -23,10 +23,9 @@ TEST(Address, RefusesOthersWithTheReason) {
   try {
     parse_address("tcp:host:5x");
   } catch (const core::InputError& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "address: tcp:host:5x: the port is no number up to 65535; expected tcp:HOST:PORT, tcp:PORT or "
-        "unix:PATH");
+    EXPECT_STREQ(e.what(),
+                 "tcp:host:5x: the port is no number up to 65535; expected tcp:HOST:PORT, tcp:PORT or "
+                 "unix:PATH");
   }
 }
 

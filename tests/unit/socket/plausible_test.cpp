@@ -116,6 +116,19 @@ TEST(Plausible, MessagesMustFitTheDescription) {
   EXPECT_NE(implausible(battery, v), "");
 }
 
+// NaN and -5 were taken.
+TEST(Plausible, TheClimbOfAGreetingIsAHeight) {
+  Hello hello;
+  for (const double good_m : {0.0, 0.3, 20.0}) {
+    hello.climb_m = good_m;
+    EXPECT_EQ(implausible(hello), "");
+  }
+  for (const double bad_m : {std::nan(""), -5.0, -1e-9, 101.0, std::numeric_limits<double>::infinity()}) {
+    hello.climb_m = bad_m;
+    EXPECT_EQ(implausible(hello), "climb_m: expected 0 to 100") << bad_m;
+  }
+}
+
 TEST(Plausible, CommandsAreNumbers) {
   core::Command c;
   EXPECT_EQ(implausible(c), "");

@@ -303,6 +303,9 @@ TEST(PreflightCommand, OfAVehicleHasTheErrorsOfAMission) {
   EXPECT_TRUE(contains(error_of({"--vehicle", "simulator", "nowhere.info"}), "nowhere.info"));
   EXPECT_TRUE(contains(error_of({"--vehicle", "simulator", mission_file(), "--set", "team.robots=2"}),
                        "for one vehicle, not for a team"));
+  const std::string without_cave = (own_folder() / "without_cave.info").string();
+  std::ofstream(without_cave) << "seed 3\n";
+  EXPECT_TRUE(contains(error_of({"--vehicle", "simulator", without_cave}), "--set cave.file=FILE"));
   EXPECT_TRUE(contains(error_of({}), "argument cave is missing, or --vehicle"));
 }
 
@@ -318,7 +321,9 @@ TEST(PreflightCommand, BadInputIsAnError) {
   EXPECT_TRUE(contains(error_with({"--battery", "8 m"}), "simulator.battery_minutes"));
   EXPECT_TRUE(contains(error_with({"--battery", "8 min", "--set", "simulator.battery_minutes=9 min"}),
                        "is given by --battery as well"));
-  EXPECT_TRUE(contains(error_with({"--vehicle", "submarine"}), "simulator.vehicle"));
+  EXPECT_TRUE(contains(error_with({"--vehicle", "submarine"}), "no vehicle \"submarine\" here; there is:"));
+  EXPECT_TRUE(contains(error_with({"--vehicle", "submarine"}), "camera_uav"));
+  EXPECT_TRUE(contains(error_with({"--vehicle", "submarine"}), "simulator"));
   EXPECT_TRUE(contains(error_with({"--set", "team.robots=3"}), "for one vehicle, not for a team"));
   EXPECT_TRUE(contains(error_with({"--set", "policy.auto.metric=coverage"}), "policy.auto"));
   EXPECT_TRUE(contains(error_with({"--results", "nowhere.info"}), "nowhere.info"));

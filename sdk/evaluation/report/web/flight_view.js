@@ -33,6 +33,17 @@ function makeDrawings(drawings) {
   return { group, labels };
 }
 
+/** The edges of the region's bodies, as pairs of points one after another. */
+function regionEdges(bodies) {
+  const points = [];
+  for (const { outline, low, high } of bodies)
+    outline.forEach((a, i) => {
+      const b = outline[(i + 1) % outline.length];
+      points.push(...a, low, ...b, low, ...a, high, ...b, high, ...a, low, ...a, high);
+    });
+  return points;
+}
+
 /** { object, layer: {name: object}, choices: names of layers to be shown or hidden, setTime(t), setResolution(w, h), labels, vehicles } of a run with phases, goals,
  *  plans, frontiers, choices, drawings, and tracks or null. `scores` is what showScoreScale() shows. */
 function makeFlight(run) {
@@ -56,6 +67,11 @@ function makeFlight(run) {
   }
   let trueLine = null;
   if (truth && truth.count > 1) trueLine = addLine("true path", thickLine(truth.xyz, 1.5, colours.truth), 3);
+  if (run.region) {
+    const edges = new THREE.BufferGeometry();
+    edges.setAttribute("position", new THREE.Float32BufferAttribute(regionEdges(run.region), 3));
+    add("region", new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: colours.region })), 1);
+  }
   const frontiers = add("frontiers", roundMarks(colours.frontier), 5);
   const objects = add("objects", roundMarks(colours.object), 6);
   const goal = add("goal", goalIcon(), 8);
@@ -67,7 +83,7 @@ function makeFlight(run) {
   let shownPlan, shownFrontiers, shownObjects, shownDrawings, drawingLabels = [], clusterPlaces = [], resolution = [1, 1];
   const used = { plan: run.plans.length, goal: run.goals.length, frontiers: run.frontiers.length, objects: run.objects.length,
                  drawings: run.drawings.some((d) => d[1].length) };
-  const choices = ["path", "true path", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
+  const choices = ["path", "true path", "region", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
   const view = { object, layer, choices, labels: [], avoid: [], scores: null, vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
   const withResolution = (line) => { line.material.resolution.set(...resolution); return line; };
 

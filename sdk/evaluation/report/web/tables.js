@@ -88,7 +88,7 @@ function showHeader() {
   const refused = typeof m.goals_rejected === "number" ? `(${m.goals_rejected})` : "";
   showFigures([
     ["flight time", typeof m.flight_time_s === "number" ? durationParts(m.flight_time_s) : null],
-    ["explored", figure(m.explored_volume_m3, "m³", 4)], ["coverage", figureShare(m.coverage)],
+    ["explored", figure(m.explored_volume_m3, "m³", 4)], [m.coverage_of ? `coverage of the ${m.coverage_of}` : "coverage", figureShare(m.coverage)],
     ["path length", figure(m.path_length_m, "m")], ["mean speed", figure(m.mean_speed_mps, "m/s")],
     ["least clearance", figure(m.min_clearance_m, "m", 2)], ["contacts", figure(m.contacts, "", 3)],
     ["landing error", figure(m.landing_error_m, "m", 2)], ["map error", figure(m.map_error_mean_m, "m", 2)],

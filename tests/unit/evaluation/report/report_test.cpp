@@ -9,6 +9,7 @@
 #include "core_stack/common/error.h"
 #include "sdk/evaluation/decisions/goal_spans.h"
 #include "sdk/evaluation/metrics/metrics.h"
+#include "sdk/evaluation/metrics/summary.h"
 #include "sdk/evaluation/report/team_report.h"
 #include "tests/unit/evaluation/fake_run.h"
 
@@ -67,6 +68,31 @@ TEST(Report, HoldsTheRunsData) {
   EXPECT_GT(d["goals"].size(), 5u);
   EXPECT_EQ(d["phases"].size(), 4u);
   EXPECT_FALSE(d["curves"]["volume"].empty());
+}
+
+TEST(Report, ShowsTheRegionAndSaysThatItsCoverageIsOfIt) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  write_report(dir.path());
+  EXPECT_TRUE(data_of(bytes_of(dir.path() / "report.html"))["region"].is_null());
+  EXPECT_FALSE(evaluate_run(dir.path(), {}).contains("coverage_of"));
+  std::ofstream(dir.path() / "mission.info", std::ios::app)
+      << "region { keep_in \"polygon -5 -5 30 -5 30 9\" keep_out \"box 1 2 -1 3 4 1.5\" margin 0.5 }\n";
+  auto metrics = evaluate_run(dir.path(), {});
+  EXPECT_EQ(metrics["coverage_of"], "region");
+  metrics["coverage"] = 0.994;
+  EXPECT_NE(summary_of(metrics, {}).find("(99.4 % of what can be reached in the region)"), std::string::npos)
+      << summary_of(metrics, {});
+  write_report(dir.path());
+  const json bodies = data_of(bytes_of(dir.path() / "report.html"))["region"];
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(bodies[0]["keep"], "in");
+  EXPECT_EQ(bodies[0]["outline"], json::parse("[[-5,-5],[30,-5],[30,9]]"));
+  EXPECT_LT(bodies[0]["low"].get<double>(), 0) << "an open height ends with the map";
+  EXPECT_LT(bodies[0]["high"].get<double>() - bodies[0]["low"].get<double>(), 50);
+  EXPECT_EQ(bodies[1]["keep"], "out");
+  EXPECT_EQ(bodies[1]["low"], -1);
+  EXPECT_EQ(bodies[1]["high"], 1.5);
 }
 
 TEST(Report, HoldsTheDrawingsThatItIsGivenAndTheirNote) {

@@ -38,6 +38,29 @@ std::string refusal_of_region(const Prism& keep_in, const std::vector<Prism>& ke
   return "";
 }
 
+// 0.1 m was taken: the vehicle took off, and could fly nowhere.
+TEST(OptionsCheck, ALimitOfTheWayHomeMustLeaveRoomToFly) {
+  const auto refusal_of = [](double max_home_m) -> std::string {
+    FlightRegion::Limits limits;
+    limits.max_home_m = max_home_m;
+    CoreOptions o;
+    o.mission.takeoff_height_m = 0.7;
+    o.planning.clearance_m = 0.6;
+    o.region = std::make_shared<const FlightRegion>(limits);
+    try {
+      check_region("some.mission", o, {});
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal_of(1.31), "");
+  EXPECT_EQ(refusal_of(60), "");
+  for (const double bad_m : {0.1, 0.7, 1.29})
+    EXPECT_TRUE(refusal_of(bad_m).starts_with("some.mission: region.max_home_distance: is ")) << bad_m;
+  EXPECT_NE(refusal_of(0.1).find("at least 1.30 m"), std::string::npos) << refusal_of(0.1);
+}
+
 TEST(OptionsCheck, ARegionMustHoldTheStartTheTakeOffAndTheFirstHover) {
   // The hover is 0.7 m up, and needs clearance, margin and nearly a cell on all sides: 1.28 m.
   EXPECT_EQ(refusal_of_region(box({0, 0, 0.4}, {9, 9, 3})), "");

@@ -23,6 +23,8 @@ inline preflight::SensorTimeline steady(preflight::Sensor sensor, double hz, con
 inline preflight::VehicleMeasurements known_vehicle() {
   using preflight::Sensor;
   preflight::VehicleMeasurements m;
+  m.plugin = "mavlink";
+  m.mission_file = "cave & co.info";
   m.vehicle.name = "known <vehicle>";
   m.vehicle.lidar = std::make_shared<core::LidarModel>();
   m.rest_s = 15;

@@ -32,7 +32,8 @@ TEST(VehicleWords, TheVerdictCountsWhatSpeaksAgainstIt) {
 TEST(VehicleWords, SaysWhatWasMeasuredWhatIsRequiredAndWhatToDo) {
   const VehicleMeasurements m = with_low_battery();
   const std::string text = checks_text(m, checks_of(m));
-  EXPECT_TRUE(text.starts_with("NO-GO, for 1 reason: vehicle known <vehicle>"));
+  EXPECT_TRUE(text.starts_with(
+      "NO-GO, for 1 reason: vehicle known <vehicle> (plugin mavlink, mission cave & co.info), listened"));
   EXPECT_TRUE(
       contains(text, "battery, charge: 30 % (required: at least 90 %). To do: charge it, or take another"));
   EXPECT_TRUE(contains(text, "  IMU: rate 200.0 Hz; ")) << text;
@@ -46,6 +47,8 @@ TEST(VehicleWords, JsonHasEveryCheckAndNoNumberThatIsNone) {
   const nlohmann::ordered_json j = to_json(m, checks);
   EXPECT_EQ(j["schema"], "karst.vehicle_preflight/1");
   EXPECT_EQ(j["verdict"], "no_go");
+  EXPECT_EQ(j["plugin"], "mavlink");
+  EXPECT_EQ(j["mission_file"], "cave & co.info");
   EXPECT_EQ(j["checks"].size(), checks.size());
   EXPECT_TRUE(j["sensors"][0]["latency_s"].is_null());
   EXPECT_EQ(j["motion"]["scans"], 250);
@@ -57,6 +60,7 @@ TEST(VehiclePage, ShowsVerdictReasonsPlotsAndBoxes) {
   EXPECT_TRUE(page.starts_with("<!doctype html>"));
   EXPECT_TRUE(contains(page, "<p class=\"verdict no_go\">NO-GO, for 1 reason</p>"));
   EXPECT_TRUE(contains(page, "<h1>Preflight: vehicle known &lt;vehicle&gt;</h1>"));
+  EXPECT_TRUE(contains(page, "By plugin mavlink, mission cave &amp; co.info."));
   EXPECT_TRUE(contains(page, "class=\"box\""));
   EXPECT_TRUE(contains(page, "Rates of the sensors over time"));
   EXPECT_TRUE(contains(page, "Rates of rotation by LiDAR and gyroscope"));

@@ -147,6 +147,27 @@ TEST(VehicleRules, WhatTheMotionShows) {
   expect_only([](auto& m) { m.motion.reset(); }, Outcome::watch, Part::lidar, "mounting and delay");
 }
 
+// Its stamps were blamed: the delay and the agreement of noise with noise.
+TEST(VehicleRules, AVehicleThatWasNotTurnedIsNotBlamedForItsStamps) {
+  const auto stood = [](VehicleMeasurements& m) {
+    m.motion->gyroscope_rates =
+        m.motion->lidar_rates = {{0, 0.002}, {core::kSecond, 0.01}, {2 * core::kSecond, 0.004}};
+    m.motion->lidar_rates.push_back({3 * core::kSecond, 9});  // a scan was matched wrongly
+    m.motion->hand_eye->explained = 0.01;
+    m.motion->hand_eye->delay_s = -0.43;
+    m.motion->hand_eye->weakest_rate_radps = 0.001;
+    m.compass->by_gyroscope->scatter_as_is = m.compass->by_lidar->scatter_as_is = 10;
+  };
+  expect_only(stood, Outcome::no_go, Part::lidar, "turned by hand");
+  EXPECT_NE(wrong_with(stood)[0].remedy.find("roll it, nod it and turn it"), std::string::npos);
+  // A gyroscope that is dead while the LiDAR turns is another fault.
+  const auto dead = [](VehicleMeasurements& m) {
+    for (TurnRate& r : m.motion->gyroscope_rates) r.radps = 0;
+    m.motion->hand_eye->explained = 0;
+  };
+  expect_only(dead, Outcome::no_go, Part::lidar, "turns agree with the gyroscope's");
+}
+
 Eigen::Matrix3d quarter_turn() {
   return Eigen::AngleAxisd(90 * kDegree, core::Vec3::UnitZ()).toRotationMatrix();
 }

@@ -1,0 +1,61 @@
+#include "sdk/flight/truth_of_flight.h"
+
+#include <boost/property_tree/ptree.hpp>
+#include <cmath>
+
+#include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
+#include "core_stack/common/options.h"
+#include "sdk/evaluation/record/run_record.h"
+
+namespace karst::flight {
+namespace {
+
+namespace fs = std::filesystem;
+using core::format_text;
+
+constexpr double kStart_m = 1;  // the estimate begins where the mission says that the vehicle stands
+constexpr double kEnd_s = 2;    // in real time, the two clocks are set within a fraction of a second
+
+/// "" if it is not recorded, or cannot be read.
+std::string seed_of(const fs::path& folder) {
+  std::error_code ignored;
+  if (!fs::exists(folder / "mission.info", ignored)) return "";
+  try {
+    return core::read_info((folder / "mission.info").string()).get("seed", "");
+  } catch (const core::InputError&) {
+    return "";
+  }
+}
+
+bool has_landed(const evaluation::RunRecord& run) {
+  const auto outcome = run.last<core::event::Outcome>();
+  return outcome && outcome->outcome == core::MissionOutcome::landed;
+}
+
+}  // namespace
+
+void check_same_flight(const fs::path& run_dir, const fs::path& truth) {
+  const auto refuse = [&](const std::string& difference) {
+    throw core::InputError(truth.string(), "",
+                           "is the truth of another flight than " + run_dir.string() + ": " + difference);
+  };
+  if (const std::string of_run = seed_of(run_dir), of_truth = seed_of(truth);
+      !of_run.empty() && !of_truth.empty() && of_run != of_truth)
+    refuse("its seed is " + of_truth + ", and not " + of_run);
+  const evaluation::RunRecord run = evaluation::read_run(run_dir);
+  std::vector<std::string> problems;
+  const auto poses = evaluation::read_tum(truth / "ground_truth.tum", problems);
+  if (run.estimate.empty() || poses.empty()) return;
+  const core::Vec3 start = run.estimate.front().T_world_body.position,
+                   true_start = poses.front().T_world_body.position;
+  if ((start - true_start).norm() > kStart_m)
+    refuse(format_text("it begins at (%.1f, %.1f, %.1f), and not at (%.1f, %.1f, %.1f)", true_start.x(),
+                       true_start.y(), true_start.z(), start.x(), start.y(), start.z()));
+  // A vehicle whose core is gone flies on for a while, and a core whose vehicle is gone waits for it.
+  const double end_s = run.estimate.back().t_s, true_end_s = poses.back().t_s;
+  if (has_landed(run) && std::abs(end_s - true_end_s) > kEnd_s)
+    refuse(format_text("it ends after %.1f s, and not after %.1f s", true_end_s, end_s));
+}
+
+}  // namespace karst::flight
