@@ -92,8 +92,8 @@ void Estimator::on_imu(const ImuSample& imu) {
   if (guessed && none_missing) {  // they come late: what another did was measured
     guessed_until_ = imu.stamp;
     poses_since_guess_ = kPosesThatTell;
-  } else if (guessed) {
-    lose_track();
+  } else if (guessed && imu.stamp - last_pose_ > from_seconds(options_.pose_timeout_s)) {
+    lose_track();  // the LiDAR did not see it either
   }
 }
 
@@ -103,7 +103,7 @@ void Estimator::lose_track() {
   magnetic_.lose_track();
   newcomer_.reset();
   refused_ = 0;
-  guessed_until_ = state().stamp;
+  track_lost_at_ = guessed_until_ = state().stamp;
   poses_since_guess_ = 0;
 }
 

@@ -49,6 +49,8 @@ class Estimator {
   void bridge(const ImuSample& expected, Expected how = Expected::as_commanded);
   /// Nobody measured for a while what the vehicle did.
   void lose_track();
+  /// Stamp of the newest sample at the last time. A sweep that began before is bent by what nobody measured.
+  TimeNs track_lost_at() const { return track_lost_at_; }
   /// Another steered while the IMU was silent, or nobody measured, and no two poses since then have told
   /// where it is and how fast.
   bool guesses() const { return poses_since_guess_ < kPosesThatTell; }
@@ -86,6 +88,7 @@ class Estimator {
   TimeNs last_imu_ = 0, last_pose_ = 0;
   TimeNs newest_pose_ = std::numeric_limits<TimeNs>::min();  // accepted or not
   TimeNs newest_mag_ = std::numeric_limits<TimeNs>::min(), newest_height_ = newest_mag_;
+  TimeNs track_lost_at_ = std::numeric_limits<TimeNs>::min();
   TimeNs guessed_until_ = std::numeric_limits<TimeNs>::min();  // the newest sample bridged for another
   static constexpr int kPosesThatTell = 2;
   int poses_since_guess_ = kPosesThatTell;  // accepted; or more

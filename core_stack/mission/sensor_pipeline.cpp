@@ -31,6 +31,8 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
   scan = stamped_right(std::move(scan));
   if (!scan) return;
   if (!loam_) return map_scan(scan);
+  const TimeNs began = scan->stamp - scan->model->period;
+  if (began < onboard_.flight.estimator().track_lost_at()) return;
   if (onboard_.executive.under_way("localization") > 1)
     return;  // in real time, when localization falls behind: late scans are useless
   if (sweeps_++ % 2 == 1 && onboard_.load.sheds(Relief::half_the_sweeps)) return;
