@@ -23,6 +23,8 @@ constexpr double kHeightKnown_m = 0.03;
 constexpr TimeNs kStale = 200 * kMillisecond;
 /// Between two samples of an IMU of 100 Hz or more, of which one may be lost.
 constexpr TimeNs kNoneMissing = 25 * kMillisecond;
+/// Between two samples, without a predicted one: the IMU's clock was set.
+constexpr TimeNs kLeap = 300 * kMillisecond;
 /// Factor on the noise of samples predicted from the commands. They include neither the wind (0.75 m/s^2 by
 /// drag in a gust of 5 m/s) nor the lag of the rates behind the command (0.25 rad/s while a turn begins), and
 /// both persist from one pose to the next: 0.07 m/s and 0.025 rad in 0.1 s, which this noise covers with 0.2
@@ -85,11 +87,15 @@ void Estimator::on_imu(const ImuSample& imu) {
   if (lidar_.started() && imu.stamp <= last_imu_) return;
   if (!lidar_.started()) last_pose_ = imu.stamp;
   const bool guessed = guessed_until_ > last_imu_, none_missing = imu.stamp - last_imu_ <= kNoneMissing;
-  last_imu_ = imu.stamp;
+  const bool leaps = lidar_.started() && imu.stamp - state().stamp > kLeap;
   lidar_.on_imu(imu);
   magnetic_.on_imu(imu);
   if (newcomer_) newcomer_->on_imu(imu);
-  if (guessed && none_missing) {  // they come late: what another did was measured
+  if (state().stamp != imu.stamp) return;  // too old to take the place of what was predicted for its time
+  last_imu_ = imu.stamp;
+  if (leaps) {
+    lose_track();
+  } else if (guessed && none_missing) {  // they come late: what another did was measured
     guessed_until_ = imu.stamp;
     poses_since_guess_ = kPosesThatTell;
   } else if (guessed && imu.stamp - last_pose_ > from_seconds(options_.pose_timeout_s)) {

@@ -225,13 +225,18 @@ TEST(Estimator, WhatWasFlownUnseenDoesNotBecomeSpeed) {
   };
   fly(2 * kSecond, Vec3::Zero(), Vec3::Zero());
   e.on_imu({t, Vec3(0, 0, 9.81), Vec3::Zero()});
-  const Vec3 stopped = seconds(kSecond) * speed;
+  const auto expect_found = [&](const Vec3& stopped) {
+    EXPECT_TRUE(e.guesses());
+    fly(t + 350 * kMillisecond, stopped, Vec3::Zero());
+    EXPECT_FALSE(e.guesses());
+    EXPECT_LT(e.state().velocity_mps.norm(), 0.1);
+    EXPECT_LT((e.state().position - stopped).norm(), 0.02);
+  };
   e.lose_track();
-  EXPECT_TRUE(e.guesses());
-  fly(t + 350 * kMillisecond, stopped, Vec3::Zero());
-  EXPECT_FALSE(e.guesses());
-  EXPECT_LT(e.state().velocity_mps.norm(), 0.1);
-  EXPECT_LT((e.state().position - stopped).norm(), 0.02);
+  expect_found(speed);
+  t += kSecond;  // a clock was set: the stamps leap
+  e.on_imu({t, Vec3(0, 0, 9.81), Vec3::Zero()});
+  expect_found(2 * speed);
 }
 
 // As it was: the samples of the silence were dropped when they came, and what was predicted stayed.
@@ -258,6 +263,24 @@ TEST(Estimator, SamplesThatComeLateTakeThePlaceOfThePredictedOnes) {
     EXPECT_EQ(late.active().covariance(), in_time.active().covariance());
     EXPECT_FALSE(late.guesses()) << "all was measured";
   }
+}
+
+// The vehicle's process stood still: its clock is set back, and the first samples have stamps of long ago.
+TEST(Estimator, SamplesThatComeTooLateDoNotEndAGuess) {
+  Estimator e({}, {});
+  const Vec3 hover(0, 0, 9.81);
+  TimeNs t = 0;
+  for (; t <= kSecond; t += kImuPeriod) e.on_imu({t, hover, Vec3::Zero()});
+  e.on_lidar_pose({kSecond, {}, 1e-5 * Matrix6::Identity()});
+  const TimeNs silent_from = t;
+  for (; t <= 3 * kSecond; t += kImuPeriod)
+    e.bridge({t, hover, Vec3::Zero()}, Estimator::Expected::another_steers);
+  for (TimeNs old = silent_from; old < silent_from + 80 * kMillisecond; old += kImuPeriod)
+    e.on_imu({old, hover, Vec3::Zero()});
+  EXPECT_TRUE(e.guesses());
+  e.on_imu({t, hover, Vec3::Zero()});
+  EXPECT_TRUE(e.guesses());
+  EXPECT_EQ(e.track_lost_at(), t);
 }
 
 TEST(Estimator, InputsThatAreNotFiniteAreIgnoredAndDegradeHealth) {
