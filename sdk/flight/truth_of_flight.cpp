@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 using core::format_text;
 
 constexpr double kStart_m = 1;  // the estimate begins where the mission says that the vehicle stands
-// The estimate's path may differ from the true one by so much. Times may differ by more: the clock of a
-// process that stood still is set back.
-constexpr double kLength_m = 2, kLengthFraction = 0.1;
+// The length of the estimate's path may differ from the true one by so much: it leaps where the pose was
+// lost. Times may differ by more: the clock of a process that stood still is set back.
+constexpr double kLength_m = 3, kLengthFraction = 0.2;
 
 /// "" if it is not recorded, or cannot be read.
 std::string seed_of(const fs::path& folder) {

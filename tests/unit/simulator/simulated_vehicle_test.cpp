@@ -368,5 +368,30 @@ TEST_F(Simulation, WithoutCommandsTheAutopilotLevelsTheVehicleAndComesDown) {
   vehicle.finish();
 }
 
+// The rates of the last command were held for half a second: at 1 rad/s that tipped it over by 30 degrees.
+TEST_F(Simulation, RatesOfTheLastCommandAreNotHeld) {
+  SimulatedVehicle vehicle(options, setup);
+  Executive executive(1);
+  listener = std::make_unique<Listener>();
+  listener->executive = &executive;
+  vehicle.start(executive, *listener);
+  const double weight_n = vehicle.description().mass_kg * 9.81;
+  executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [&] {
+    const double t = seconds(executive.now());
+    Command c;
+    c.rates = {Vec3(t > 2.45 ? 1 : 0, 0, 0), (t < 1 ? 1.15 : 1.01) * weight_n, true};
+    c.state_is_known = true;
+    c.state.velocity_mps = vehicle.velocity_mps();
+    if (t < 2.5) vehicle.command(c);
+  });
+  double fastest_mps = 0;
+  executive.every("watch", 10 * kMillisecond, 10 * kMillisecond,
+                  [&] { fastest_mps = std::max(fastest_mps, vehicle.velocity_mps().head<2>().norm()); });
+  executive.run_until(from_seconds(3.9), [] { return false; });
+  EXPECT_LT(fastest_mps, 0.5);
+  EXPECT_NEAR(vehicle.velocity_mps().norm(), 0, 0.1) << "it hovers first";
+  vehicle.finish();
+}
+
 }  // namespace
 }  // namespace karst::test
