@@ -9,6 +9,7 @@
 #include "core_stack/common/random.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
 #include "plugins/replay/decimal_time.h"
+#include "plugins/replay/recording.h"
 #include "sdk/evaluation/record/poses.h"
 #include "tests/unit/replay/folder.h"
 
@@ -98,7 +99,8 @@ void write_recording(const Folder& dir, bool with_imu) {
 }
 
 ReplaySummary replay(const Folder& dir, const std::filesystem::path& out) {
-  return replay_recording(open_recording(dir.path(), ""), {}, out,
+  FolderSensors sensors(open_recording(dir.path(), ""));
+  return replay_recording(sensors, {}, out,
                           [](std::size_t, const core::LoamPose&, const core::VoxelMap&) { return true; });
 }
 
