@@ -39,6 +39,10 @@ class FaultLog {
   void add(std::string place, std::string reason) {
     if (++count_ <= kKept) faults_.push_back({std::move(place), std::move(reason)});
   }
+  void add(const FaultLog& other) {
+    for (const Fault& f : other.faults_) add(f.place, f.reason);
+    count_ += other.count_ - other.faults_.size();
+  }
   const std::vector<Fault>& first() const { return faults_; }
   std::size_t count() const { return count_; }
 

@@ -125,7 +125,7 @@ BagSurvey survey_bag(const std::string& path, SurveyExtent extent, const FieldNa
   }
   BagSurvey survey = std::move(surveyor.survey);
   survey.whole = ended;
-  for (const Fault& f : bag->faults().first()) survey.faults.add(f.place, f.reason);
+  survey.faults.add(bag->faults());
   return survey;
 }
 

@@ -112,7 +112,10 @@ inline std::string compressed(replay::Compression c, const std::string& in) {
     BZ2_bzBuffToBuffCompress(out.data(), &n, const_cast<char*>(in.data()), static_cast<unsigned>(in.size()), 9, 0, 0);
     out.resize(n);
   } else if (c == replay::Compression::lz4) {
-    out.resize(LZ4F_compressFrame(out.data(), out.size(), in.data(), in.size(), nullptr));
+    LZ4F_preferences_t preferences{};  // what ROS 1 writes, and reads
+    preferences.frameInfo.blockMode = LZ4F_blockIndependent;
+    preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+    out.resize(LZ4F_compressFrame(out.data(), out.size(), in.data(), in.size(), &preferences));
   } else {
     out.resize(ZSTD_compress(out.data(), out.size(), in.data(), in.size(), 1));
   }
