@@ -52,13 +52,14 @@ nlohmann::ordered_json json_of(const replay::BagSurvey& survey, const replay::Re
 }
 
 void print_survey(const replay::BagSurvey& survey, const replay::RecordingGuess& guess) {
-  print_out("%s s to %s s, %.1f s\n\n", replay::decimal_seconds(survey.first).c_str(),
+  // All but the keys are comments, so that the whole is a recording file.
+  print_out("; %s s to %s s, %.1f s\n;\n", replay::decimal_seconds(survey.first).c_str(),
             replay::decimal_seconds(survey.last).c_str(), core::seconds(survey.last - survey.first));
-  print_out("%-32s %-32s %9s %9s %9s %12s\n", "topic", "type", "messages", "Hz", "MB", "longest gap");
+  print_out("; %-30s %-32s %9s %9s %9s %12s\n", "topic", "type", "messages", "Hz", "MB", "longest gap");
   for (const auto& t : survey.topics)
-    print_out("%-32s %-32s %9zu %9.2f %9.2f %10.3f s\n", t.topic.c_str(), t.type.c_str(), t.messages, t.rate_hz(),
+    print_out("; %-30s %-32s %9zu %9.2f %9.2f %10.3f s\n", t.topic.c_str(), t.type.c_str(), t.messages, t.rate_hz(),
               static_cast<double>(t.bytes) * 1e-6, core::seconds(t.longest_gap));
-  print_out("\n; A recording file for karst replay --info:\n%s", replay::recording_info_text(guess).c_str());
+  print_out(";\n%s", replay::recording_info_text(guess).c_str());
 }
 
 int show_recording(const RecordingArguments& args) {

@@ -64,7 +64,8 @@ LoadedChunk ChunkedBag::load(std::size_t chunk, bool log) {
   if (problem.empty() && place.crc != 0) {
     const auto crc = crc32(0, reinterpret_cast<const Bytef*>(d.bytes.data()), static_cast<uInt>(d.bytes.size()));
     if (crc != place.crc) {
-      report("its check sum is wrong: none of it is used");
+      report("its check sum is wrong: none of its messages is used");
+      take_descriptions(d.bytes);
       return loaded;
     }
   }
@@ -77,6 +78,15 @@ LoadedChunk ChunkedBag::load(std::size_t chunk, bool log) {
   if (!problem.empty())
     report(problem + "; " + std::to_string(loaded.messages.size()) + " messages before that are used");
   return loaded;
+}
+
+void ChunkedBag::take_descriptions(Bytes records) {
+  // Later chunks may need what only this one describes. What is described elsewhere stays as it is.
+  std::vector<ChunkMessage> unused;
+  try {
+    parse(records, unused);
+  } catch (const MalformedError&) {
+  }
 }
 
 void ChunkedBag::rebuild_index(bool all) {

@@ -54,6 +54,8 @@ class ChunkedBag : public Bag {
 
  private:
   LoadedChunk load(std::size_t chunk, bool log);
+  /// The connections among the records of a damaged chunk.
+  void take_descriptions(Bytes records);
 
   std::string path_;
   std::ifstream file_;

@@ -42,10 +42,11 @@ Kind kind_of(const CloudFacts& c) {
   return {"unknown", "its fields are those of no driver that karst knows"};
 }
 
-std::string three(const core::Vec3& v, int decimals) {
+/// Three numbers with the digits that count, such as "0 0 0.5".
+std::string three(const core::Vec3& v) {
+  const auto rounded = [](double x) { return std::round(x * 1e9) * 1e-9 + 0.0; };
   std::array<char, 120> text;
-  std::snprintf(text.data(), text.size(), "%.*f %.*f %.*f", decimals, v.x() + 0.0, decimals, v.y() + 0.0, decimals,
-                v.z() + 0.0);
+  std::snprintf(text.data(), text.size(), "%.9g %.9g %.9g", rounded(v.x()), rounded(v.y()), rounded(v.z()));
   return text.data();
 }
 
@@ -56,7 +57,7 @@ std::string degrees_of(const core::Quat& q) {
   const bool upright = std::abs(R(2, 0)) > 1 - 1e-12;  // only the difference of roll and yaw is known
   const double roll = upright ? 0 : std::atan2(R(2, 1), R(2, 2));
   const double yaw = upright ? std::atan2(-R(0, 1), R(1, 1)) : std::atan2(R(1, 0), R(0, 0));
-  return three(core::Vec3(roll, pitch, yaw) * (180 / std::numbers::pi), 9);
+  return three(core::Vec3(roll, pitch, yaw) * (180 / std::numbers::pi));
 }
 
 std::string namespace_of(const std::string& topic) { return topic.substr(0, topic.find('/', 1)); }
@@ -228,7 +229,7 @@ class Guesser {
       const auto T_body_lidar = find_transform(survey_.transforms, body, lidar.frame);
       const auto T_body_imu = imu ? find_transform(survey_.transforms, body, imu->frame) : core::Pose{};
       if (!T_body_lidar || !T_body_imu) continue;
-      guess.info.lidar_position = three(T_body_lidar->position, 6);
+      guess.info.lidar_position = three(T_body_lidar->position);
       guess.info.lidar_rotation = degrees_of(T_body_lidar->orientation);
       guess.info.imu_rotation = degrees_of(T_body_imu->orientation);
       if (imu) guess.info.imu_topic = imu->topic;
