@@ -20,7 +20,10 @@ struct Files {
 std::vector<Files> small_bags(const Folder& dir) {
   using enum Compression;
   Written one = test::written(Serializer::ros1), two = test::written(Serializer::cdr_little);
-  one.messages.resize(100), two.messages.resize(100);
+  for (Written* w : {&one, &two}) {  // two scans are among these
+    w->messages.erase(w->messages.begin(), w->messages.begin() + 60);
+    w->messages.resize(100);
+  }
   test::write_db3((dir.path() / "seed.db3").string(), two.topics, two.messages, true);
   return {{"a.bag", test::ros1_bag(one.topics, one.messages, {none, true, 15})},
           {"b.bag", test::ros1_bag(one.topics, one.messages, {lz4, true, 15})},
@@ -68,7 +71,8 @@ TEST(BagDamage, WrongBytesAnywhereAreAnErrorOrLeaveTheRestReadable) {
         bytes[k] = static_cast<char>(random.uniform() * 256);
       opened += read_all(dir.write(f.name, bytes)) >= 0;
     }
-    EXPECT_GT(opened, 30) << f.name;
+    // Without a summary, only the first chunk tells the topics.
+    EXPECT_GT(opened, f.name == "f.mcap" ? 15 : 30) << f.name;
   }
 }
 
