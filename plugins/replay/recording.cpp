@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/sweep_of_scan.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 namespace {

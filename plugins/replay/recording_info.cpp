@@ -3,7 +3,7 @@
 #include <boost/property_tree/ptree.hpp>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 
 namespace karst::replay {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "plugins/replay/bag/bag_sensors.h"
+#include "plugins/replay/bag_sensors.h"
 #include "plugins/replay/recording.h"
 
 namespace karst::replay {

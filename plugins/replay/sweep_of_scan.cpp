@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/rings.h"
 
 namespace karst::replay {

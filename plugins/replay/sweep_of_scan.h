@@ -4,7 +4,7 @@
 
 #include "core_stack/localization/sweep.h"
 #include "plugins/replay/recording_info.h"
-#include "plugins/replay/scan.h"
+#include "plugins/replay/scan_files/scan.h"
 #include "plugins/replay/sensor_stream.h"
 
 namespace karst::replay {

@@ -7,7 +7,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/occupancy/rays.h"
 #include "core_stack/mission/recording/recorder.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/replay/imu_prediction.h"
 
 namespace karst::replay {

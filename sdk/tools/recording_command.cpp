@@ -6,8 +6,8 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
-#include "plugins/replay/bag/recording_guess.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/recording_guess.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
 

@@ -10,7 +10,7 @@
 namespace karst::replay {
 namespace {
 
-// Two bags' worth of a gigabyte chunk never are in memory: a few overlapping chunks of usual size are.
+// Chunks of recorders have about a megabyte, and few of them overlap.
 constexpr std::size_t kMaxOpenChunkBytes = 64u << 20;
 
 }  // namespace
@@ -53,13 +53,15 @@ LoadedChunk ChunkedBag::load(std::size_t chunk, bool log) {
                   reason);
   };
   LoadedChunk loaded;
-  const std::string stored = read_at(place.offset, place.size);
+  std::string stored = read_at(place.offset, place.size);
   std::string problem(place.cut);
   if (place.compression == Compression::none && stored.size() > kMaxChunkBytes) {
     report("is larger than " + std::to_string(kMaxChunkBytes >> 20) + " MiB");
     return loaded;
   }
-  Decompressed d = decompress(place.compression, stored, place.bytes);
+  Decompressed d = place.compression == Compression::none
+                       ? Decompressed{std::move(stored), ""}
+                       : decompress(place.compression, stored, place.bytes);
   if (problem.empty()) problem = d.problem;
   if (problem.empty() && place.crc != 0) {
     const auto crc = crc32(0, reinterpret_cast<const Bytef*>(d.bytes.data()), static_cast<uInt>(d.bytes.size()));

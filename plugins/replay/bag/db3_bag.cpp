@@ -1,6 +1,7 @@
 // Bags of ROS 2 in SQLite: a table of topics, and one of messages in CDR.
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <map>
 
 #include "core_stack/common/error.h"

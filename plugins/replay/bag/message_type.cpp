@@ -7,7 +7,7 @@
 
 #include "plugins/replay/bag/bag.h"
 #include "plugins/replay/bag/bytes.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 namespace {

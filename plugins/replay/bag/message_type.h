@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "plugins/replay/fields.h"
+#include "plugins/replay/scan_files/fields.h"
 
 namespace karst::replay {
 

@@ -6,7 +6,7 @@
 #include "core_stack/vehicle/messages.h"
 #include "plugins/replay/bag/bag.h"
 #include "plugins/replay/bag/message.h"
-#include "plugins/replay/scan.h"
+#include "plugins/replay/scan_files/scan.h"
 
 namespace karst::replay {
 

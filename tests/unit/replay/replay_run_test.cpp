@@ -8,7 +8,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/recording.h"
 #include "sdk/evaluation/record/poses.h"
 #include "tests/unit/replay/folder.h"

@@ -4,7 +4,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
 #include "core_stack/common/random.h"
-#include "plugins/replay/bag/bag_sensors.h"
+#include "plugins/replay/bag_sensors.h"
 #include "tests/unit/replay/bag/room_bag.h"
 
 namespace karst::replay {

@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/bag/bag_sensors.h"
+#include "plugins/replay/bag_sensors.h"
 #include "plugins/replay/bag/message_type.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/recording.h"
 #include "plugins/replay/recording_source.h"
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 #include "sdk/evaluation/record/poses.h"
 #include "sdk/replay/replay_run.h"
 #include "tests/unit/replay/bag/bag_writer.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "plugins/replay/bag/message_type.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "tests/unit/replay/bag/bag_writer.h"
 #include "tests/unit/replay/room_walk.h"
 

@@ -1,12 +1,13 @@
-#include "plugins/replay/bag/bag_sensors.h"
+#include "plugins/replay/bag_sensors.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/sweep_of_scan.h"
 
 namespace karst::replay {

@@ -1,4 +1,4 @@
-#include "plugins/replay/bag/recording_guess.h"
+#include "plugins/replay/recording_guess.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 
 namespace karst::replay {
 namespace {
@@ -137,7 +137,7 @@ class Guesser {
       if (s.last_time - s.first_time > widest->last_time - widest->first_time) widest = &s;
     const double spread = widest->last_time - widest->first_time;
     if (spread == 0) return ground("The times of all points are equal: motion during a scan is not compensated.");
-    // A sweep lasts between 20 ms and half a second: one unit fits at most.
+    // A sweep lasts between 2 ms and 1 s: one unit fits at most.
     std::string unit;
     for (const char* u : {"s", "ms", "us", "ns"}) {
       const double length_s = spread * static_cast<double>(nanoseconds_of(u)) * 1e-9;

@@ -1,12 +1,12 @@
 // What karst finds out about the sensors in a bag: the drivers' fields, units and origins of their times, mounting.
-#include "plugins/replay/bag/recording_guess.h"
+#include "plugins/replay/recording_guess.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/bag/bag_sensors.h"
+#include "plugins/replay/bag_sensors.h"
 #include "tests/unit/replay/bag/bag_writer.h"
 
 namespace karst::replay {

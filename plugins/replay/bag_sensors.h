@@ -2,7 +2,7 @@
 #pragma once
 #include <deque>
 
-#include "plugins/replay/bag/recording_guess.h"
+#include "plugins/replay/recording_guess.h"
 #include "plugins/replay/sensor_stream.h"
 
 namespace karst::replay {
