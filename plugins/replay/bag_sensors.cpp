@@ -37,7 +37,8 @@ BagRecording open_bag_recording(const std::string& path, const std::string& info
   BagRecording r;
   r.path = path;
   r.info_file = info_file;
-  const fs::path beside = fs::path(path).replace_extension(".info");
+  const fs::path named = fs::is_directory(path) ? fs::path(path) / "recording" : fs::path(path);
+  const fs::path beside = fs::path(named).replace_extension(".info");
   if (info_file.empty() && fs::exists(beside)) r.info_file = beside.string();
   RecordingInfo given;
   if (!r.info_file.empty()) given = read_recording_info(r.info_file);

@@ -10,7 +10,7 @@ namespace karst::replay {
 RecordingSource open_source(const std::string& path, const std::string& info_file) {
   RecordingSource source;
   source.path = path;
-  source.is_bag = std::filesystem::is_regular_file(path);
+  source.is_bag = std::filesystem::is_regular_file(path) || is_folder_of_bags(path);
   if (source.is_bag) {
     BagRecording bag = open_bag_recording(path, info_file);
     source.info_file = bag.info_file;

@@ -14,6 +14,7 @@ bool is_bag(const std::string& path) {
 }
 
 std::unique_ptr<Bag> open_bag(const std::string& path) {
+  if (std::filesystem::is_directory(path)) return open_bag_folder(path);
   std::array<char, 16> head{};
   core::open_input(path, core::kMaxDataFileBytes).read(head.data(), head.size());
   const std::string_view start(head.data(), head.size());

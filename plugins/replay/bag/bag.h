@@ -67,13 +67,17 @@ class Bag {
 /// True for .bag, .mcap and .db3.
 bool is_bag(const std::string& path);
 
-/// Opens by the file's first bytes. A bag that is cut or has no index is read through once to find its
+/// True for a folder with bags in it, as ROS 2 records them.
+bool is_folder_of_bags(const std::string& path);
+
+/// Opens by the file's first bytes; of a folder, all of its bags as one. A bag that is cut or has no index is read through once to find its
 /// messages. Throws InputError if nothing of it can be read.
 std::unique_ptr<Bag> open_bag(const std::string& path);
 
 std::unique_ptr<Bag> open_mcap(const std::string& path);
 std::unique_ptr<Bag> open_rosbag1(const std::string& path);
 std::unique_ptr<Bag> open_db3(const std::string& path);
+std::unique_ptr<Bag> open_bag_folder(const std::string& folder);
 
 /// "sensor_msgs/Imu" of "sensor_msgs/msg/Imu".
 std::string plain_type(std::string_view type);

@@ -50,8 +50,9 @@ struct BagSurvey {
   FaultLog faults;
 };
 
-/// Reads the bag to its end, or until its first seconds tell enough for a replay. Throws InputError.
 enum class SurveyExtent { beginning, all };
+
+/// Reads the bag to its end, or until its first seconds tell enough for a replay. Throws InputError.
 BagSurvey survey_bag(const std::string& path, SurveyExtent extent, const FieldNames& names = {});
 
 }  // namespace karst::replay

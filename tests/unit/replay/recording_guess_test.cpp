@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <functional>
 
 #include "core_stack/common/error.h"
 #include "plugins/replay/bag_sensors.h"

@@ -71,6 +71,24 @@ TEST(BagReplay, EveryFormatGivesTheTrajectoryOfTheFiles) {
   }
 }
 
+/// ROS 2 begins a new file after so many bytes or seconds.
+TEST(BagReplay, AFolderOfSplitBagsIsOneRecording) {
+  Folder dir;
+  const Written w = written(Serializer::cdr_little);
+  std::filesystem::create_directory(dir.path() / "flight");
+  constexpr std::size_t kParts = 11;
+  for (std::size_t i = 0; i < kParts; ++i) {
+    const auto at = [&](std::size_t part) {
+      return w.messages.begin() + static_cast<std::ptrdiff_t>(w.messages.size() * part / kParts);
+    };
+    const std::vector<test::WrittenMessage> part(at(i), at(i + 1));
+    dir.write("flight/flight_" + std::to_string(i) + ".mcap",
+              test::mcap_file(w.topics, part, {Compression::zstd, true, 10}));
+  }
+  dir.write("flight/metadata.yaml", "rosbag2_bagfile_information:\n");
+  EXPECT_EQ(replayed((dir.path() / "flight").string(), dir, "split").trajectory, expected_trajectory());
+}
+
 /// Records in another order than that of time, as they are where several publishers are recorded.
 TEST(BagReplay, MessagesOfChunksThatOverlapComeInTheOrderOfTime) {
   Written w = written(Serializer::cdr_little);

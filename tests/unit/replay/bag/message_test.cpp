@@ -89,7 +89,7 @@ TEST(MessageType, ADefinitionThatDoublesAtEachLevelIsRefused) {
 TEST(Message, Ros1HasNoGapsAndCdrHasThem) {
   const MessageType type =
       parse_message_type("p/T", "uint8 a\nfloat64 b\nstring s\nint16[] n\nuint32 last\n", Dialect::ros2);
-  const std::string one("\x07\0\0\0\0\0\0\xf8\x3f\x02\0\0\0hi\x02\0\0\0\xff\xff\x02\0\x04\x03\x02\x01", 29);
+  const std::string one("\x07\0\0\0\0\0\0\xf8\x3f\x02\0\0\0hi\x02\0\0\0\xff\xff\x02\0\x04\x03\x02\x01", 27);
   const Message m1 = Message::of(type, one, Dialect::ros1);
   // Offsets after the four bytes of CDR: a 0, b 8, s 16 (length 3 with the zero), n 24, last 32.
   const std::string little("\0\1\0\0\x07\0\0\0\0\0\0\0\0\0\0\0\0\0\xf8\x3f\x03\0\0\0hi\0\0\x02\0\0\0\xff\xff\x02\0\x04\x03\x02\x01",
