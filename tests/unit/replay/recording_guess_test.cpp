@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <numbers>
+#include <tuple>
 
 #include "core_stack/common/error.h"
 #include "plugins/replay/bag_sensors.h"
@@ -122,11 +124,11 @@ void expect_sweep(const std::string& path, double tolerance_s) {
 }
 
 TEST(RecordingGuess, KnowsTheDriversByTheirFieldsAndReadsTheirTimes) {
-  const std::array cases = {std::tuple{"Ouster", &kOuster, RingSource::field, TimeOrigin::start, "ns"},
-                            {"Velodyne", &kVelodyne, RingSource::field, TimeOrigin::start, "s"},
-                            {"Hesai or RoboSense", &kHesai, RingSource::field, TimeOrigin::absolute, "s"},
-                            {"Livox", &kLivox, RingSource::none, TimeOrigin::absolute, "ns"}};
-  for (const auto& [name, driver, rings, origin, unit] : cases) {
+  for (const auto& [name, driver, rings, origin, unit] :
+       {std::tuple{"Ouster", &kOuster, RingSource::field, TimeOrigin::start, "ns"},
+        {"Velodyne", &kVelodyne, RingSource::field, TimeOrigin::start, "s"},
+        {"Hesai or RoboSense", &kHesai, RingSource::field, TimeOrigin::absolute, "s"},
+        {"Livox", &kLivox, RingSource::none, TimeOrigin::absolute, "ns"}}) {
     SCOPED_TRACE(name);
     Folder dir;
     BagContent bag;
