@@ -91,30 +91,41 @@ class Guesser {
 
   const CloudFacts* choose_lidar() {
     const std::string& wanted = guess.info.lidar_topic;
-    const CloudFacts* chosen = nullptr;
-    std::string names;
-    for (const CloudFacts& c : survey_.clouds) {
-      if (wanted != "auto" ? c.topic != wanted : c.samples.empty()) continue;
-      names += (names.empty() ? "" : ", ") + c.topic;
-      if (chosen && wanted == "auto") {
-        chosen = nullptr;
-        doubt("Several topics have scans, " + names + " among them: choose one with bag.lidar.");
-        return nullptr;
+    std::vector<const CloudFacts*> candidates;
+    for (const CloudFacts& c : survey_.clouds)
+      if (wanted == "auto" ? !c.samples.empty() : c.topic == wanted) candidates.push_back(&c);
+    if (candidates.size() > 1) {
+      // Clouds that were worked out, such as a map, have no times.
+      std::vector<const CloudFacts*> measured;
+      for (const CloudFacts* c : candidates)
+        if (field_with(*c, Role::time)) measured.push_back(c);
+      if (measured.size() == 1) {
+        ground("Of several topics with clouds, " + measured.front()->topic +
+               " is the only one whose points have times.");
+        candidates = measured;
       }
-      chosen = &c;
     }
-    if (!chosen) {
+    if (candidates.size() > 1) {
+      std::string names;
+      for (const CloudFacts* c : candidates) names += (names.empty() ? "" : ", ") + c->topic;
+      doubt("Several topics have scans: " + names + ". Choose one with bag.lidar.");
+      return nullptr;
+    }
+    if (candidates.empty()) {
       std::string problem;
       for (const CloudFacts& c : survey_.clouds)
         if (!c.problem.empty()) problem = " (" + c.topic + ": " + c.problem + ")";
       doubt((wanted == "auto" ? "No topic has scans: sensor_msgs/PointCloud2 or Livox' CustomMsg"
                               : "The topic " + wanted + " of bag.lidar has no scans") +
             problem + ".");
-    } else if (chosen->samples.empty()) {
-      doubt("The scans of " + chosen->topic + " cannot be decoded: " + chosen->problem + ".");
-      chosen = nullptr;
+      return nullptr;
     }
-    return chosen;
+    if (candidates.front()->samples.empty()) {
+      doubt("The scans of " + candidates.front()->topic +
+            " cannot be decoded: " + candidates.front()->problem + ".");
+      return nullptr;
+    }
+    return candidates.front();
   }
 
   void guess_period(const CloudFacts& lidar) {

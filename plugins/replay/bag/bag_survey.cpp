@@ -7,7 +7,7 @@ namespace karst::replay {
 namespace {
 
 constexpr std::size_t kCloudSamples = 10, kImuSamples = 200;
-constexpr core::TimeNs kBeginning = 5 * core::kSecond;
+constexpr core::TimeNs kBeginning = 5 * core::kSecond, kPatience = 30 * core::kSecond;
 
 CloudSample sample_of(const CloudMessage& cloud) {
   CloudSample s{cloud.stamp, cloud.declared, 0, 0, 0, 0};
@@ -62,10 +62,15 @@ class Surveyor {
     if (c.topic.ends_with("tf_static") && survey.transforms.size() < 1000) take_transforms(m);
   }
 
+  /// Not every topic of clouds has many: a map may be a cloud, too.
   bool tells_enough() const {
-    return survey.last - survey.first > kBeginning &&
-           std::all_of(survey.clouds.begin(), survey.clouds.end(),
-                       [](const auto& c) { return c.samples.size() == kCloudSamples; });
+    const core::TimeNs span = survey.last - survey.first;
+    const auto sampled = [](std::size_t count) {
+      return [count](const CloudFacts& c) { return c.samples.size() >= count; };
+    };
+    const auto& clouds = survey.clouds;
+    return (span > kBeginning && std::all_of(clouds.begin(), clouds.end(), sampled(kCloudSamples))) ||
+           (span > kPatience && std::any_of(clouds.begin(), clouds.end(), sampled(kCloudSamples)));
   }
 
   BagSurvey survey;

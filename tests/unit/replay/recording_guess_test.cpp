@@ -224,7 +224,7 @@ TEST(RecordingGuess, WhatIsAmbiguousIsAnErrorThatNamesTheKey) {
     bag.add_lidar("/front", kVelodyne, "front");
     bag.add_lidar("/rear", kVelodyne, "rear");
     const std::string path = bag.write(dir);
-    EXPECT_NE(error_of(path).find("choose one with bag.lidar"), std::string::npos) << error_of(path);
+    EXPECT_NE(error_of(path).find("Choose one with bag.lidar"), std::string::npos) << error_of(path);
     dir.write("a.info", "bag { lidar /rear }\n");
     EXPECT_EQ(open_bag_recording(path, "").info.lidar_topic, "/rear");
   }
@@ -246,6 +246,15 @@ TEST(RecordingGuess, WhatIsAmbiguousIsAnErrorThatNamesTheKey) {
     bag.add_lidar("/points", odd, "lidar");
     EXPECT_NE(error_of(bag.write(dir)).find("time.unit"), std::string::npos);
   }
+}
+
+TEST(RecordingGuess, AMapBesideTheLidarIsNoLidar) {
+  Folder dir;
+  BagContent bag;
+  const Driver map = {{{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}}, 12, [](std::string&, int, TimeNs, TimeNs) {}};
+  bag.add_lidar("/map", map, "map");
+  bag.add_lidar("/points", kOuster, "lidar");
+  EXPECT_EQ(open_bag_recording(bag.write(dir), "").info.lidar_topic, "/points");
 }
 
 TEST(RecordingGuess, ItsTextIsARecordingFileThatSaysTheSame) {
