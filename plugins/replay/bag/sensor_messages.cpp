@@ -39,6 +39,7 @@ NamedFields fields_of_cloud(const Message& m, const FieldNames& names) {
   for (const Message& field : m.structures("fields")) {
     const std::string name(field.text("name"));
     const auto type = type_of_point_field(field.whole("datatype"));
+    if (!type && role_of(name, names) == Role::none) continue;  // not used
     if (!type)
       throw MalformedError("the field " + name + " has the unknown type " +
                                std::to_string(field.whole("datatype")),
