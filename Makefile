@@ -79,7 +79,7 @@ asan:
 	@cmake --build build-asan -j $(JOBS)
 	@.ci/ctest build-asan -LE flight
 # What reads files of others, and compiles soon.
-READERS = common_test replay_test simulator_cave_test
+READERS = common_test replay_test bag_test simulator_cave_test
 asan-readers:
 	@.ci/install test
 	@$(ASAN_CMAKE) >/dev/null

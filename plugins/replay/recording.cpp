@@ -1,13 +1,11 @@
 #include "plugins/replay/recording.h"
 
 #include <algorithm>
-#include <cmath>
-#include <tuple>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/decimal_time.h"
-#include "plugins/replay/rings.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/decimal_time.h"
+#include "plugins/replay/sweep_of_scan.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 namespace {
@@ -145,72 +143,6 @@ void take_point_times(const Recording& r, const RecordedFile& f, std::size_t dec
   scan.time_is_whole = is_whole(type);
 }
 
-/// Sets times in seconds since the start of the sweep, from the angle turned since the first point.
-void times_by_azimuth(const Recording& r, Scan& scan) {
-  const double sign = r.info.time_direction == TurnDirection::clockwise ? -1 : 1;
-  const auto azimuth = [](const ScanPoint& p) { return std::atan2(p.position.y(), p.position.x()); };
-  const double first = scan.points.empty() ? 0 : azimuth(scan.points.front());
-  for (ScanPoint& p : scan.points) {
-    const double turned = core::wrap_angle(sign * (azimuth(p) - first) - std::numbers::pi) + std::numbers::pi;
-    p.time = r.info.period_s * turned / (2 * std::numbers::pi);
-  }
-  scan.has_time = true;
-}
-
-/// Converts times to seconds relative to the end of the sweep (<= 0); returns the stamp of the end.
-TimeNs assign_times(const Recording& r, const RecordedFile& f, bool by_azimuth, Scan& scan) {
-  const bool known = scan.has_time && !r.info.compensated && !scan.points.empty();
-  if (!known) {
-    for (ScanPoint& p : scan.points) p.time = 0;
-    return f.stamp;
-  }
-  const std::string unit = by_azimuth                   ? "s"
-                           : r.info.time_unit != "auto" ? r.info.time_unit
-                           : scan.time_is_whole         ? "ns"
-                                                        : "s";
-  const double unit_s = static_cast<double>(nanoseconds_of(unit)) * 1e-9;
-  const auto [least, greatest] = std::minmax_element(
-      scan.points.begin(), scan.points.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
-  const double last = greatest->time, length_s = (last - least->time) * unit_s;
-  if (length_s > 10)
-    throw InputError(
-        f.path.string(), "",
-        "its points' times spread over " + std::to_string(length_s) + " s: time.unit or the field is wrong");
-  const TimeOrigin of = by_azimuth ? TimeOrigin::start : r.info.time_of;
-  TimeNs end = f.stamp;
-  if (of == TimeOrigin::absolute) {
-    end = static_cast<TimeNs>(std::llround(last * unit_s * 1e9));
-  } else if (r.info.stamp_of == StampMoment::start) {
-    end += core::from_seconds(of == TimeOrigin::start ? last * unit_s : length_s);
-  }
-  // With the stamp at the end, times from the start say by how much each point is before the last.
-  for (ScanPoint& p : scan.points) p.time = (p.time - last) * unit_s;
-  return end;
-}
-
-void order_points(Scan& scan) {
-  const bool by_time =
-      std::any_of(scan.points.begin(), scan.points.end(), [](const auto& p) { return p.time != 0; });
-  struct Key {
-    std::uint16_t ring;
-    double within;
-    std::uint32_t index;
-  };
-  std::vector<Key> keys;
-  keys.reserve(scan.points.size());
-  for (std::uint32_t i = 0; i < scan.points.size(); ++i) {
-    const ScanPoint& p = scan.points[i];
-    keys.push_back({p.ring, by_time ? p.time : std::atan2(p.position.y(), p.position.x()), i});
-  }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-    return std::tie(a.ring, a.within, a.index) < std::tie(b.ring, b.within, b.index);
-  });
-  std::vector<ScanPoint> sorted;
-  sorted.reserve(keys.size());
-  for (const Key& k : keys) sorted.push_back(scan.points[k.index]);
-  scan.points = std::move(sorted);
-}
-
 }  // namespace
 
 Recording open_recording(const fs::path& folder, const std::string& info_file) {
@@ -230,43 +162,8 @@ Recording open_recording(const fs::path& folder, const std::string& info_file) {
 core::Sweep read_sweep(const Recording& r, std::size_t i, ReadNotes* notes) {
   const RecordedFile& f = r.files.at(i);
   Scan scan = read_scan(f.path.string(), r.info.fields, r.layout.bin);
-  const std::size_t declared = scan.points.size() + scan.dropped;
-  if (!f.point_times.empty()) take_point_times(r, f, declared, scan);
-  const bool by_azimuth =
-      !scan.has_time && !r.info.compensated && r.info.time_direction != TurnDirection::none;
-  if (by_azimuth) times_by_azimuth(r, scan);
-  if (r.info.rings_by == RingSource::field && !scan.has_ring)
-    throw InputError(f.path.string(), "", "has no field with rings, which rings.by asks for");
-  if (r.info.rings_by == RingSource::order) {
-    rings_by_order(scan);  // before any points are dropped
-  }
-  std::erase_if(scan.points, [&](const ScanPoint& p) {
-    const double range = p.position.norm();
-    return range < r.info.min_range_m || range > r.info.max_range_m || range == 0;
-  });
-  if (r.info.rings_by == RingSource::elevation ||
-      (r.info.rings_by == RingSource::automatic && !scan.has_ring)) {
-    if (r.info.rings == 0)
-      throw InputError(
-          f.path.string(), "",
-          "has no field with rings: say in recording.info how many rings the sensor has "
-          "(rings.count, rings.lowest, rings.highest), or that they follow each other (rings.by order)");
-    rings_by_elevation(scan, r.info);
-  }
-  if (notes) {
-    notes->dropped = declared - scan.points.size();
-    notes->without_times = !scan.has_time && !r.info.compensated;
-  }
-
-  core::Sweep sweep;
-  sweep.T_body_lidar = r.layout.T_body_lidar;
-  sweep.compensated = r.info.compensated;
-  sweep.stamp = assign_times(r, f, by_azimuth, scan);
-  order_points(scan);
-  sweep.points.reserve(scan.points.size());
-  for (const ScanPoint& p : scan.points)
-    sweep.points.push_back({p.position, static_cast<float>(p.time), p.ring, p.intensity});
-  return sweep;
+  if (!f.point_times.empty()) take_point_times(r, f, scan.points.size() + scan.dropped, scan);
+  return sweep_of(std::move(scan), f.stamp, {f.path.string(), ""}, r.info, r.layout, notes);
 }
 
 std::optional<ImuFile> open_imu(const Recording& r) {
@@ -274,5 +171,19 @@ std::optional<ImuFile> open_imu(const Recording& r) {
   return ImuFile((r.folder / r.info.imu_file).string(), r.info.imu_columns, nanoseconds_of(r.info.imu_unit),
                  r.layout.R_body_imu);
 }
+
+FolderSensors::FolderSensors(Recording recording) : recording_(std::move(recording)), imu_(open_imu(recording_)) {}
+
+core::TimeNs FolderSensors::begin() const {
+  return recording_.files.front().stamp - core::from_seconds(recording_.info.period_s);
+}
+
+std::optional<core::Sweep> FolderSensors::next_sweep(ReadNotes& notes) {
+  if (next_ == recording_.files.size()) return std::nullopt;
+  notes.stamp = recording_.files[next_].stamp;
+  return read_sweep(recording_, next_++, &notes);
+}
+
+std::optional<core::ImuSample> FolderSensors::next_imu() { return imu_ ? imu_->next() : std::nullopt; }
 
 }  // namespace karst::replay

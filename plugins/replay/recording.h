@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "core_stack/localization/sweep.h"
-#include "plugins/replay/imu_file.h"
+#include "plugins/replay/scan_files/imu_file.h"
 #include "plugins/replay/recording_info.h"
+#include "plugins/replay/sensor_stream.h"
 
 namespace karst::replay {
 
@@ -27,17 +28,27 @@ struct Recording {
 /// InputError: no scan there, stamps that are missing or go back, a key that is wrong.
 Recording open_recording(const std::filesystem::path& folder, const std::string& info_file);
 
-/// Remarks on the file that was read.
-struct ReadNotes {
-  std::size_t dropped = 0;     // points that are not finite or out of range
-  bool without_times = false;  // not motion-compensated, and the points have no measurement times
-};
-
 /// Reads one scan: rings assigned, times relative to the end of the sweep, which becomes the stamp; points by
 /// ring, in the order of time within it (of azimuth where there is no time). Throws InputError.
 core::Sweep read_sweep(const Recording& recording, std::size_t i, ReadNotes* notes = nullptr);
 
 /// The recording's IMU, if it has one.
 std::optional<ImuFile> open_imu(const Recording& recording);
+
+class FolderSensors final : public SensorStream {
+ public:
+  explicit FolderSensors(Recording recording);
+
+  core::TimeNs begin() const override;
+  std::optional<std::size_t> scans() const override { return recording_.files.size(); }
+  std::optional<core::Sweep> next_sweep(ReadNotes& notes) override;
+  bool has_imu() const override { return imu_.has_value(); }
+  std::optional<core::ImuSample> next_imu() override;
+
+ private:
+  Recording recording_;
+  std::optional<ImuFile> imu_;
+  std::size_t next_ = 0;
+};
 
 }  // namespace karst::replay

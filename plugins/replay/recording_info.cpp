@@ -3,7 +3,7 @@
 #include <boost/property_tree/ptree.hpp>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 namespace {
@@ -108,11 +108,16 @@ void describe(core::OptionTable& t, RecordingInfo& o) {
           "order of t, ax ay az (specific force, m/s^2), wx wy wz (rates, rad/s); others may have any name");
     i.add("unit", o.imu_unit, {"s", "ms", "us", "ns"}, "of its stamps");
     i.add("rotation", o.imu_rotation, {}, "IMU to body, \"roll pitch yaw\" in degrees");
+    i.add("force_unit", o.imu_force_unit, "of the specific force, in a bag");
+  });
+  t.under("bag", [&o](core::OptionTable& b) {
+    b.add("lidar", o.lidar_topic, {}, "topic of the scans; auto: the only one that has scans");
+    b.add("imu", o.imu_topic, {}, "topic of the IMU; auto: the LiDAR's; none: without");
+    b.add("truth", o.truth_topic, {}, "topic of poses from elsewhere, for karst evaluate only; none: without");
   });
 }
 
-RecordingInfo read_recording_info(const std::string& file) {
-  RecordingInfo info;
+RecordingInfo read_recording_info(const std::string& file, RecordingInfo info) {
   core::OptionTable table;
   describe(table, info);
   table.read(file, core::read_info(file));

@@ -4,7 +4,7 @@
 
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 
 namespace karst::replay {
 
@@ -37,12 +37,20 @@ constexpr auto names_of(TurnDirection) {
       {{none, "none"}, {clockwise, "clockwise"}, {counterclockwise, "counterclockwise"}});
 }
 
-/// How a point's ring is determined; automatic: by the field if there is one, else by elevation.
-enum class RingSource { automatic, field, elevation, order };
+/// How a point's ring is determined; automatic: by the field if there is one, else by elevation. none: the LiDAR
+/// has no rings, such as a Mid-360.
+enum class RingSource { automatic, field, elevation, order, none };
 constexpr auto names_of(RingSource) {
   using enum RingSource;
   return std::to_array<core::Named<RingSource>>(
-      {{automatic, "auto"}, {field, "field"}, {elevation, "elevation"}, {order, "order"}});
+      {{automatic, "auto"}, {field, "field"}, {elevation, "elevation"}, {order, "order"}, {none, "none"}});
+}
+
+/// The unit of an IMU's specific force: Livox' drivers write g.
+enum class ForceUnit { mps2, g };
+constexpr auto names_of(ForceUnit) {
+  using enum ForceUnit;
+  return std::to_array<core::Named<ForceUnit>>({{mps2, "m/s2"}, {g, "g"}});
 }
 
 struct RecordingInfo {
@@ -69,6 +77,10 @@ struct RecordingInfo {
   double lowest_rad = 0, highest_rad = 0;
 
   std::string imu_file, imu_columns = "t ax ay az wx wy wz", imu_unit = "s", imu_rotation = "0 0 0";
+  ForceUnit imu_force_unit = ForceUnit::mps2;
+
+  // Topics of a bag; auto: as karst finds out.
+  std::string lidar_topic = "auto", imu_topic = "auto", truth_topic = "none";
 };
 void describe(core::OptionTable& t, RecordingInfo& o);
 
@@ -80,8 +92,9 @@ struct RecordingLayout {
   core::Quat R_body_imu = core::Quat::Identity();
 };
 
-/// Reads and checks the file. Throws InputError naming file, key, the expected value and the nearest key.
-RecordingInfo read_recording_info(const std::string& file);
+/// Reads and checks the file; keys that it lacks stay as in `info`. Throws InputError naming file, key, the expected
+/// value and the nearest key.
+RecordingInfo read_recording_info(const std::string& file, RecordingInfo info = {});
 RecordingLayout layout_of(const RecordingInfo& info, const std::string& file);
 
 }  // namespace karst::replay

@@ -1,7 +1,7 @@
 // Assigns each point of a scan to a ring if the file does not contain rings.
 #pragma once
 #include "plugins/replay/recording_info.h"
-#include "plugins/replay/scan.h"
+#include "plugins/replay/scan_files/scan.h"
 
 namespace karst::replay {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "plugins/replay/fields.h"
+#include "plugins/replay/scan_files/fields.h"
 
 namespace karst::from_cloud {
 

@@ -7,7 +7,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 #include "plugins/simulator/cave/mesh_advice.h"
 #include "plugins/simulator/cave/mesh_offset.h"
 #include "plugins/simulator/cave/triangle_mesh.h"

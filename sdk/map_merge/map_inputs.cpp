@@ -2,7 +2,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/map_merge/merge_maps.h"
 

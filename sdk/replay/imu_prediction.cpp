@@ -7,13 +7,13 @@ namespace karst::replay {
 using core::TimeNs;
 using core::Vec3;
 
-ImuPrediction::ImuPrediction(ImuFile file, const core::EstimatorOptions& options, TimeNs origin, bool level,
+ImuPrediction::ImuPrediction(SensorStream& sensors, const core::EstimatorOptions& options, TimeNs origin, bool level,
                              double still_s)
-    : file_(std::move(file)), origin_(origin) {
+    : sensors_(sensors), origin_(origin) {
   // An IMU often runs before the first scan: samples older than `still_s` before it are not used.
   const TimeNs still = core::from_seconds(still_s);
   Vec3 force = Vec3::Zero();
-  for (TimeNs begin = 0; auto sample = file_.next();) {
+  for (TimeNs begin = 0; auto sample = sensors_.next_imu();) {
     sample->stamp -= origin_;
     if (sample->stamp < -still) continue;
     if (waiting_.empty()) begin = sample->stamp;
@@ -37,7 +37,7 @@ std::optional<core::ImuSample> ImuPrediction::take() {
     waiting_.pop_back();
     return s;
   }
-  auto sample = file_.next();
+  auto sample = sensors_.next_imu();
   if (sample) sample->stamp -= origin_;
   return sample;
 }

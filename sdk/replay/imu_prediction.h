@@ -4,7 +4,7 @@
 
 #include "core_stack/localization/estimator.h"
 #include "core_stack/localization/loam.h"
-#include "plugins/replay/imu_file.h"
+#include "plugins/replay/sensor_stream.h"
 
 namespace karst::replay {
 
@@ -12,7 +12,7 @@ class ImuPrediction {
  public:
   /// Reads the samples up to `still_s` after the start of the first scan or of the IMU data, whichever is
   /// later. Returned times are relative to `origin`.
-  ImuPrediction(ImuFile file, const core::EstimatorOptions& options, core::TimeNs origin, bool level,
+  ImuPrediction(SensorStream& sensors, const core::EstimatorOptions& options, core::TimeNs origin, bool level,
                 double still_s);
 
   /// The start pose; if it is to be levelled, its roll and pitch come from the mean specific force.
@@ -25,7 +25,7 @@ class ImuPrediction {
  private:
   std::optional<core::ImuSample> take();
 
-  ImuFile file_;
+  SensorStream& sensors_;
   core::TimeNs origin_;
   std::vector<core::ImuSample> waiting_;  // read ahead, newest first
   core::Pose T_world_start_;

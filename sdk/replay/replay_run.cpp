@@ -7,7 +7,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/occupancy/rays.h"
 #include "core_stack/mission/recording/recorder.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/replay/imu_prediction.h"
 
 namespace karst::replay {
@@ -83,8 +83,9 @@ class ReplayFiles {
     if (!recorder_.flush() || !trajectory_)
       throw core::InputError(recorder_.directory().string(), "", "cannot be written: is the disk full?");
   }
-  void begin(std::size_t scans) {
-    recorder_.write(0, core::event::Phase{core::Phase::replay, std::to_string(scans) + " scans"});
+  void begin(std::optional<std::size_t> scans) {
+    recorder_.write(0, core::event::Phase{core::Phase::replay,
+                                          scans ? std::to_string(*scans) + " scans" : "the scans of a bag"});
   }
 
  private:
@@ -106,31 +107,34 @@ void describe(core::OptionTable& t, ReplayOptions& o) {
   t.add("replay.still", o.still_s, "s", 0.01, 60, "length of this moment");
 }
 
-ReplaySummary replay_recording(const Recording& recording, const ReplayOptions& options,
+ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& options,
                                const std::filesystem::path& run_dir, const ReplayProgress& progress) {
   using Clock = std::chrono::steady_clock;
-  const TimeNs origin = recording.files.front().stamp - core::from_seconds(recording.info.period_s);
+  const TimeNs origin = sensors.begin();
   std::optional<ImuPrediction> imu;
-  if (auto file = open_imu(recording))
-    imu.emplace(std::move(*file), options.estimator, origin, options.level, options.still_s);
+  if (sensors.has_imu()) imu.emplace(sensors, options.estimator, origin, options.level, options.still_s);
   core::Loam loam(options.loam, imu ? imu->T_world_start() : Pose{});
   core::VoxelMap map(options.map);
   ReplayFiles files(run_dir, origin);
-  files.begin(recording.files.size());
+  files.begin(sensors.scans());
 
   ReplaySummary summary;
   core::StateHistory track;
   const core::StateHistory nothing;
   Pose last;
-  for (std::size_t i = 0; i < recording.files.size(); ++i) {
+  TimeNs last_stamp = 0;
+  bool go_on = true;
+  while (go_on) {
     ReadNotes notes;
-    core::Sweep sweep;
+    std::optional<core::Sweep> next;
     try {
-      sweep = read_sweep(recording, i, &notes);
+      next = sensors.next_sweep(notes);
     } catch (const core::InputError& e) {
-      files.end(recording.files[i].stamp - origin, core::MissionOutcome::aborted, e.what(), map);
+      files.end(notes.stamp - origin, core::MissionOutcome::aborted, e.what(), map);
       throw;
     }
+    if (!next) break;
+    core::Sweep& sweep = *next;
     sweep.stamp -= origin;
     const core::StateHistory& predicted = imu ? imu->up_to(sweep.stamp) : nothing;
 
@@ -162,13 +166,11 @@ ReplaySummary replay_recording(const Recording& recording, const ReplayOptions& 
     summary.localization_s += took_s;
     summary.slowest_s = std::max(summary.slowest_s, took_s);
     files.scan(pose, changes, map, velocity_mps);
-    const bool go_on = progress(i + 1, pose, map);
-    if (!go_on || i + 1 == recording.files.size()) {
-      files.end(sweep.stamp, go_on ? core::MissionOutcome::replayed : core::MissionOutcome::aborted,
-                go_on ? "the recording ended" : "stopped by the operator", map);
-      break;
-    }
+    last_stamp = sweep.stamp;
+    go_on = progress(summary.scans, pose, map);
   }
+  files.end(last_stamp, go_on ? core::MissionOutcome::replayed : core::MissionOutcome::aborted,
+            go_on ? "the recording ended" : "stopped by the operator", map);
   summary.imu_samples = imu ? imu->samples() : 0;
   return summary;
 }

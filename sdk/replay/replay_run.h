@@ -6,7 +6,7 @@
 #include "core_stack/localization/estimator.h"
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
-#include "plugins/replay/recording.h"
+#include "plugins/replay/sensor_stream.h"
 
 namespace karst::replay {
 
@@ -36,7 +36,7 @@ using ReplayProgress =
 /// Writes trajectory.tum in the recording's own time, map files and events into `run_dir`, which must be
 /// fresh. Except for the map, memory does not grow with the recording. Stops early when `progress` returns
 /// false. Throws InputError when a file is damaged; the output up to that scan is complete.
-ReplaySummary replay_recording(const Recording& recording, const ReplayOptions& options,
+ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& options,
                                const std::filesystem::path& run_dir, const ReplayProgress& progress);
 
 }  // namespace karst::replay

@@ -24,6 +24,7 @@
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/preflight_command.h"
 #include "sdk/tools/python_command.h"
+#include "sdk/tools/recording_command.h"
 #include "sdk/tools/recover_command.h"
 #include "sdk/tools/replay_command.h"
 #include "sdk/tools/report_command.h"
@@ -66,6 +67,7 @@ std::shared_ptr<CLI::App> karst_command() {
   add_table_command(*app);
   add_explain_command(*app);
   add_explain_time_command(*app);
+  add_recording_command(*app);
   add_replay_command(*app);
   add_evaluate_command(*app);
   add_map_command(*app);

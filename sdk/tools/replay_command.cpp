@@ -10,9 +10,11 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/printable.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/run_files.h"
+#include "plugins/replay/bag_sensors.h"
+#include "plugins/replay/recording_source.h"
 #include "sdk/replay/replay_run.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
@@ -33,12 +35,12 @@ struct ReplayArguments {
 /// One line that is rewritten on a terminal, otherwise one line every hundred scans.
 class ReplayLine {
  public:
-  ReplayLine(bool quiet, std::size_t scans) : quiet_(quiet), scans_(scans) {}
+  ReplayLine(bool quiet, std::optional<std::size_t> scans) : quiet_(quiet), scans_(scans) {}
   void show(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) const {
     if (quiet_ || (!terminal_ && scan % 100 != 0)) return;
     const core::Vec3& p = pose.T_world_body.position;
-    std::fprintf(stderr, "%sscan %zu of %zu  at (%.1f, %.1f, %.1f)  %d features  %.0f m³ free  %s%s",
-                 terminal_ ? "\r\033[K" : "", scan, scans_, p.x(), p.y(), p.z(), pose.edges + pose.planes,
+    std::fprintf(stderr, "%sscan %zu%s  at (%.1f, %.1f, %.1f)  %d features  %.0f m³ free  %s%s",
+                 terminal_ ? "\r\033[K" : "", scan, scans_ ? (" of " + std::to_string(*scans_)).c_str() : "", p.x(), p.y(), p.z(), pose.edges + pose.planes,
                  map.free_volume_m3(), pose.valid ? "" : ("lost: " + core::printable(pose.problem)).c_str(),
                  terminal_ ? "" : "\n");
   }
@@ -48,7 +50,7 @@ class ReplayLine {
 
  private:
   bool quiet_, terminal_ = isatty(STDERR_FILENO) == 1;
-  std::size_t scans_;
+  std::optional<std::size_t> scans_;
 };
 
 core::OptionTable table_of(replay::ReplayOptions& options) {
@@ -70,15 +72,15 @@ replay::ReplayOptions options_of(const ReplayArguments& args) {
 }
 
 /// All resolved settings, and the recording's own description.
-void write_settings(const fs::path& run_dir, const replay::Recording& recording,
+void write_settings(const fs::path& run_dir, const replay::RecordingSource& recording,
                     replay::ReplayOptions options) {
   pt::ptree tree = table_of(options).resolved();
   core::OptionTable declared;
   replay::RecordingInfo info = recording.info;
   describe(declared, info);
   tree.put_child("recording", declared.resolved());
-  const core::TimeNs origin = recording.files.front().stamp - core::from_seconds(recording.info.period_s);
-  tree.put("replay.scans", fs::absolute(recording.folder).lexically_normal().string());
+  const core::TimeNs origin = recording.sensors->begin();
+  tree.put("replay.scans", fs::absolute(recording.path).lexically_normal().string());
   tree.put("replay.info", recording.info_file);
   tree.put("replay.time_origin", replay::decimal_seconds(origin));
   tree.put("karst.version", KARST_VERSION);
@@ -115,6 +117,13 @@ void print_summary(const replay::ReplaySummary& s, const nlohmann::json& metrics
             (run_dir / "trajectory.tum").c_str(), run_dir.c_str());
 }
 
+void print_damage(const replay::SensorStream::Damage& damage) {
+  for (const std::string& d : damage.first) print_error("karst: %s\n", core::printable(d).c_str());
+  if (damage.count > damage.first.size())
+    print_error("karst: and %zu more like these\n", damage.count - damage.first.size());
+  print_error("karst: the bag is damaged; what could be read of it was replayed\n");
+}
+
 int replay_scans(const ReplayArguments& args) {
   if (args.keys) {
     replay::ReplayOptions options;
@@ -128,9 +137,9 @@ int replay_scans(const ReplayArguments& args) {
   if (args.scans.empty() || args.out.empty())
     throw core::InputError("karst replay", "", "needs SCANS and --out DIR; see karst replay --help");
   const replay::ReplayOptions options = options_of(args);
-  const replay::Recording recording = replay::open_recording(args.scans, args.info);
-  replay::read_sweep(recording, 0);  // an error common to all sweeps appears before anything is written
-  replay::open_imu(recording);
+  const replay::RecordingSource recording = replay::open_source(args.scans, args.info);
+  if (!args.quiet && !args.json)
+    for (const std::string& a : recording.assumptions) std::fprintf(stderr, "%s\n", core::printable(a).c_str());
 
   const std::atomic<bool>& interrupted = watch_for_interrupt();
   const fs::path run_dir = flight::run_dir_of(args.out);
@@ -144,10 +153,12 @@ int replay_scans(const ReplayArguments& args) {
 
   replay::ReplaySummary summary;
   std::string damage;
-  const ReplayLine line(args.quiet || args.json, recording.files.size());
+  const ReplayLine line(args.quiet || args.json, recording.sensors->scans());
   try {
+    if (recording.is_bag && recording.info.truth_topic != "none")
+      replay::write_truth(recording.path, recording.info.truth_topic, (run_dir / "truth.tum").string());
     summary = replay::replay_recording(
-        recording, options, run_dir,
+        *recording.sensors, options, run_dir,
         [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
           line.show(scan, pose, map);
           return !interrupted;
@@ -167,6 +178,10 @@ int replay_scans(const ReplayArguments& args) {
   } else {
     print_summary(summary, metrics, run_dir, !args.no_report);
   }
+  if (const replay::SensorStream::Damage d = recording.sensors->damage(); d.count > 0) {
+    print_damage(d);
+    return 1;
+  }
   return interrupted || summary.lost == summary.scans ? 2 : 0;
 }
 
@@ -176,16 +191,18 @@ void add_replay_command(CLI::App& app) {
   auto args = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand(
       "replay",
-      "Localize and map from recorded scans (PCD, PLY, bare .bin), with an IMU where there is one\n\n"
+      "Localize and map from recorded scans (ROS bags, MCAP, PCD, PLY, bare .bin), with an IMU where there is one\n\n"
       "  karst replay scans/kitti00 --info kitti.info --out runs/kitti00\n"
       "  karst replay flight7 --out runs/flight7 --set map.resolution=\"0.3 m\"\n"
+      "  karst replay flight8.mcap --out runs/flight8\n"
       "  karst replay --keys\n\n"
-      "SCANS is a folder; a small file recording.info in it, or --info, declares what the files do not say: "
+      "SCANS is a bag (.bag, .mcap, .db3) or a folder. Of a bag, karst finds the sensors and says what it assumed; "
+      "FILE.info beside it, or --info, overrides that. In a folder, a small file recording.info in it, or --info, declares what the files do not say: "
       "stamps, layout, units, frames, rings (" +
           core::doc_path("docs/replay.md") +
           ").\n"
           "Exit code: 0 replayed, 2 stopped by the operator or no scan could be placed, 1 an error.");
-  command->add_option("scans", args->scans, "folder of scans")->type_name(kFolder)->check(not_empty());
+  command->add_option("scans", args->scans, "folder of scans, or a bag")->type_name(kFile)->check(not_empty());
   command->add_option("--out,-o", args->out, "run directory")->type_name(kFolder)->check(not_empty());
   command
       ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")

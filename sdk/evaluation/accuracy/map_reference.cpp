@@ -7,7 +7,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/obstacles/point_tree.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 #include "plugins/simulator/cave/cave.h"
 #include "sdk/evaluation/accuracy/map_error.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/rings.h"
 #include "tests/unit/replay/folder.h"
 

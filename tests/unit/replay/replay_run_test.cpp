@@ -8,9 +8,11 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
+#include "plugins/replay/recording.h"
 #include "sdk/evaluation/record/poses.h"
 #include "tests/unit/replay/folder.h"
+#include "tests/unit/replay/room_walk.h"
 
 namespace karst::replay {
 namespace {
@@ -19,53 +21,11 @@ using core::Pose;
 using core::Vec3;
 using test::Folder;
 using test::put;
-
-constexpr double kBegin_s = 1000, kPeriod_s = 0.1;
-constexpr int kScans = 25, kRings = 16, kColumns = 360;
-
-/// A walk through the room: up to 0.8 m/s, turning by 0.3 rad/s; at rest at first.
-Pose pose_at(double t_s) {
-  const double s = std::max(0.0, t_s), along = 0.8 * (s - std::tanh(s));
-  return {Vec3(along, 0.3 * std::sin(0.8 * along), 0.1 * std::sin(along)),
-          core::from_heading(0.3 * (s - std::tanh(s)))};
-}
-
-/// Range from inside a 14 x 9 x 5 m room with two square pillars.
-double range_in_room(const Vec3& from, const Vec3& direction) {
-  double nearest = 1e9;
-  const auto slab = [&](const Vec3& low, const Vec3& high, bool inside) {
-    double enter = -1e9, leave = 1e9;
-    for (int a = 0; a < 3; ++a) {
-      const double u = (low[a] - from[a]) / direction[a], v = (high[a] - from[a]) / direction[a];
-      enter = std::max(enter, std::min(u, v)), leave = std::min(leave, std::max(u, v));
-    }
-    if (inside) nearest = std::min(nearest, leave);
-    if (!inside && enter > 0 && enter < leave) nearest = std::min(nearest, enter);
-  };
-  slab({-6, -4, -1.5}, {8, 5, 3.5}, true);
-  slab({3, 2, -1.5}, {4, 3, 3.5}, false);
-  slab({-3, -3, -1.5}, {-2.2, -2.2, 3.5}, false);
-  return nearest;
-}
-
-/// One turn of the sensor, clockwise from behind, written as records x y z t ring.
-std::string scan_at(double end_s, core::Random& noise) {
-  std::string bytes;
-  for (int ring = 0; ring < kRings; ++ring)
-    for (int j = 0; j < kColumns; ++j) {
-      const double before_s = kPeriod_s * (1 - (j + 1.0) / kColumns);
-      const Pose T = pose_at(end_s - before_s);
-      const double azimuth = std::numbers::pi * (1 - 2 * (j + 0.5) / kColumns),
-                   elevation = 0.35 - 0.7 * ring / (kRings - 1);
-      const Vec3 d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                   std::sin(elevation));
-      const Vec3 p = d * (range_in_room(T.position, T.orientation * d) + 0.01 * noise.normal());
-      for (int a = 0; a < 3; ++a) put(bytes, static_cast<float>(p[a]));
-      put(bytes, static_cast<float>(kPeriod_s - before_s));
-      put(bytes, static_cast<float>(ring));
-    }
-  return bytes;
-}
+using test::kBegin_s;
+using test::kPeriod_s;
+using test::kScans;
+using test::pose_at;
+using test::scan_at;
 
 std::string name_of(int i) { return "scan" + std::to_string(i) + ".bin"; }
 
@@ -98,7 +58,8 @@ void write_recording(const Folder& dir, bool with_imu) {
 }
 
 ReplaySummary replay(const Folder& dir, const std::filesystem::path& out) {
-  return replay_recording(open_recording(dir.path(), ""), {}, out,
+  FolderSensors sensors(open_recording(dir.path(), ""));
+  return replay_recording(sensors, {}, out,
                           [](std::size_t, const core::LoamPose&, const core::VoxelMap&) { return true; });
 }
 

@@ -1,5 +1,5 @@
 // Each format against the points it was written from, and damaged files of all kinds.
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/lzf.h"
+#include "plugins/replay/scan_files/lzf.h"
 #include "tests/unit/replay/folder.h"
 
 namespace karst::replay {

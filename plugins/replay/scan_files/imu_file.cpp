@@ -1,12 +1,12 @@
-#include "plugins/replay/imu_file.h"
+#include "plugins/replay/scan_files/imu_file.h"
 
 #include <cctype>
 #include <cmath>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
-#include "plugins/replay/decimal_time.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/decimal_time.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 

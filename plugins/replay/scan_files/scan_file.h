@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "plugins/replay/fields.h"
+#include "plugins/replay/scan_files/fields.h"
 
 namespace karst::replay {
 

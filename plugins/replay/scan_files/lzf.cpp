@@ -1,4 +1,4 @@
-#include "plugins/replay/lzf.h"
+#include "plugins/replay/scan_files/lzf.h"
 
 namespace karst::replay {
 

@@ -1,4 +1,4 @@
-#include "plugins/replay/fields.h"
+#include "plugins/replay/scan_files/fields.h"
 
 #include <algorithm>
 #include <array>

@@ -1,11 +1,11 @@
-#include "plugins/replay/decimal_time.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 

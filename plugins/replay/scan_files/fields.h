@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "plugins/replay/scan.h"
+#include "plugins/replay/scan_files/scan.h"
 
 namespace karst::replay {
 

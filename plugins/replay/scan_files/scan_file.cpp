@@ -1,4 +1,4 @@
-#include "plugins/replay/scan_file.h"
+#include "plugins/replay/scan_files/scan_file.h"
 
 #include <filesystem>
 

@@ -2,8 +2,8 @@
 #include <bit>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/scan_file.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/scan_file.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 namespace {

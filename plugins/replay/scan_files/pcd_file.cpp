@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/lzf.h"
-#include "plugins/replay/scan_file.h"
-#include "plugins/replay/text_numbers.h"
+#include "plugins/replay/scan_files/lzf.h"
+#include "plugins/replay/scan_files/scan_file.h"
+#include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
 namespace {

@@ -1,0 +1,24 @@
+// What a bag's messages tell of its sensors: the keys of a recording.info, each with its evidence.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "plugins/replay/bag/bag_survey.h"
+#include "plugins/replay/recording_info.h"
+
+namespace karst::replay {
+
+struct RecordingGuess {
+  RecordingInfo info;                // lidar_topic and imu_topic name topics, or "none"
+  std::string lidar;                 // "Ouster", "Livox" ...; "" without one
+  std::vector<std::string> grounds;  // what was assumed, and why, a sentence each
+  std::vector<std::string> doubts;   // what a recording.info has to say before a replay, a sentence each
+};
+
+/// `given`: keys that are already known, such as the topic; they are not guessed.
+RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given = {});
+
+/// The keys that are not at their defaults, as text of a recording.info, with the grounds as comments.
+std::string recording_info_text(const RecordingGuess& guess);
+
+}  // namespace karst::replay
