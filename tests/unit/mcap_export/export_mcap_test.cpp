@@ -1,0 +1,176 @@
+// A run directory becomes one file, and what is refused. interop.mjs compares the messages with the run.
+#include "sdk/mcap_export/export_mcap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "core_stack/common/error.h"
+#include "sdk/evaluation/record/run_record.h"
+#include "sdk/mcap_export/event_words.h"
+#include "tests/unit/evaluation/fake_run.h"
+#include "tests/unit/mcap_export/mcap_records_read.h"
+
+namespace karst::mcap {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class ExportMcap : public testing::Test {
+ protected:
+  ExportMcap() { test::write_fake_run(run_, {.length_m = 12}); }
+  McapExport exported(std::optional<core::TimeNs> epoch = {}) const {
+    return export_mcap(run_, file_, epoch, "1");
+  }
+  std::string error(const fs::path& file) const {
+    try {
+      export_mcap(run_, file, {}, "1");
+    } catch (const core::InputError& e) {
+      return e.what();
+    }
+    return "";
+  }
+  std::size_t files() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(out_), {}));
+  }
+  void cut(const char* name) const { fs::resize_file(run_ / name, fs::file_size(run_ / name) - 5); }
+
+  const test::TemporaryDirectory folder_;
+  const fs::path run_ = folder_.path() / "run", out_ = folder_.path() / "out", file_ = out_ / "a.mcap";
+  const bool made_ = fs::create_directories(out_);
+};
+
+TEST_F(ExportMcap, HasAMessageForEachPoseAndTheTopicsOfWhatTheRunHolds) {
+  const McapExport made = exported();
+  const evaluation::RunRecord run = evaluation::read_run(run_);
+  std::map<std::string, std::uint64_t> counts;
+  for (const TopicCount& t : made.topics) counts[t.name] = t.messages;
+  EXPECT_EQ(counts["/odometry"], run.estimate.size());
+  EXPECT_EQ(counts["/truth/odometry"], run.truth.size());
+  EXPECT_EQ(counts["/tf"], run.estimate.size() + run.truth.size());
+  for (const char* topic : {"/path", "/map", "/map/new", "/plan", "/frontiers", "/goals", "/drawings",
+                            "/phase", "/battery", "/events"})
+    EXPECT_GT(counts[topic], 0u) << topic;
+  EXPECT_EQ(made.bytes, fs::file_size(file_));
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(ExportMcap, TimesNeverFallAndCountFromTheEpoch) {
+  exported(1000 * core::kSecond);
+  const auto messages = test::messages_of(bytes_of(file_));
+  EXPECT_GE(messages.front().time_ns, 1'000'000'000'000u);
+  EXPECT_TRUE(std::is_sorted(messages.begin(), messages.end(),
+                             [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; }));
+}
+
+TEST_F(ExportMcap, TheSameRunGivesTheSameBytes) {
+  exported();
+  const std::string first = bytes_of(file_);
+  exported();
+  EXPECT_EQ(bytes_of(file_), first);
+}
+
+TEST_F(ExportMcap, WithoutATrajectoryIsRefusedAndLeavesNoFile) {
+  fs::remove(run_ / "trajectory.tum");
+  EXPECT_NE(error(file_).find("trajectory.tum: is not there"), std::string::npos) << error(file_);
+  std::ofstream(run_ / "trajectory.tum") << "";
+  EXPECT_NE(error(file_).find("holds no pose"), std::string::npos) << error(file_);
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(ExportMcap, WhatIsNoRunDirectoryIsRefused) {
+  EXPECT_THROW(export_mcap(folder_.path() / "none", file_, {}, "1"), core::InputError);
+  const fs::path empty = folder_.path() / "empty";
+  fs::create_directories(empty);
+  EXPECT_THROW(export_mcap(empty, file_, {}, "1"), core::InputError);
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(ExportMcap, OfFilesThatAreCutOffWhatCanBeReadIsExportedAndTheRestReported) {
+  const std::size_t poses = evaluation::read_run(run_).estimate.size();
+  for (const char* name : {"trajectory.tum", "events.jsonl", "telemetry.csv", "map_growth.bin"}) cut(name);
+  const McapExport made = exported();
+  const auto reported = [&](const char* name) {
+    return std::any_of(made.problems.begin(), made.problems.end(),
+                       [&](const std::string& p) { return p.find(name) != std::string::npos; });
+  };
+  for (const char* name : {"trajectory.tum", "events.jsonl", "telemetry.csv", "map_growth.bin"})
+    EXPECT_TRUE(reported(name)) << name;
+  for (const TopicCount& t : made.topics)
+    if (t.name == "/odometry") EXPECT_EQ(t.messages, poses - 1);
+}
+
+TEST_F(ExportMcap, WithNothingButATrajectoryThereIsAPath) {
+  for (const char* name :
+       {"events.jsonl", "telemetry.csv", "map_growth.bin", "ground_truth.tum", "truth.csv"})
+    fs::remove(run_ / name);
+  std::set<std::string> topics;
+  for (const TopicCount& t : exported().topics) topics.insert(t.name);
+  EXPECT_EQ(topics, (std::set<std::string>{"/tf", "/odometry", "/path"}));
+}
+
+TEST_F(ExportMcap, AFullDiskIsAnErrorWithItsReason) {
+  EXPECT_NE(error("/dev/full").find("/dev/full: cannot be written: No space left"), std::string::npos)
+      << error("/dev/full");
+}
+
+TEST_F(ExportMcap, AFileThatCannotBeMadeIsAnErrorAndLeavesNothing) {
+  EXPECT_NE(error(out_ / "none" / "a.mcap").find("No such file"), std::string::npos);
+  fs::create_directory(file_);  // cannot be renamed onto
+  EXPECT_NE(error(file_).find("a.mcap: cannot be written"), std::string::npos) << error(file_);
+  EXPECT_EQ(files(), 1u);
+  EXPECT_TRUE(fs::is_directory(file_));
+}
+
+TEST_F(ExportMcap, AFileThatWasThereStaysUntilTheNewOneIsWhole) {
+  std::ofstream(file_) << "before";
+  fs::remove(run_ / "trajectory.tum");
+  error(file_);
+  EXPECT_EQ(bytes_of(file_), "before");
+}
+
+TEST_F(ExportMcap, PicturesThatAreMissingOrDamagedAreLeftOutAndReported) {
+  std::ofstream(run_ / "frames.csv") << "stamp_s,file,x,y,z,qx,qy,qz,qw,width,height,fx,fy,cx,cy\n"
+                                        "0.5,frames/a.jpg,0,0,1,0,0,0,1,320,240,200,200,160,120\n"
+                                        "1.0,frames/b.jpg,0,0,1,0,0,0,1,320,240,200,200,160,120\n"
+                                        "1.5,,0,0,1,0,0,0,1,320,240,200,200,160,120\n"
+                                        "2.0,frames/c.jpg,0,0,1,0,0,0,1,nan,240,200,200,160,120\n";
+  fs::create_directories(run_ / "frames");
+  std::ofstream(run_ / "frames/a.jpg") << "\xff\xd8picture";
+  std::ofstream(run_ / "frames/b.jpg") << "no picture";
+  const McapExport made = exported();
+  for (const TopicCount& t : made.topics)
+    if (t.name.starts_with("/camera")) EXPECT_EQ(t.messages, 1u) << t.name;
+  EXPECT_EQ(std::count_if(made.problems.begin(), made.problems.end(),
+                          [](const std::string& p) {
+                            return p.find("b.jpg") != std::string::npos ||
+                                   p.find("frames.csv: picture 4") != std::string::npos;
+                          }),
+            2);
+}
+
+TEST(EventWords, TellStateAndReason) {
+  core::event::Goal goal;
+  goal.state = core::event::GoalState::reached;
+  goal.position = {1, 2, 3};
+  goal.score = 4.5;
+  goal.why = "near";
+  goal.reason = "seen";
+  const auto words = words_of(goal);
+  ASSERT_TRUE(words);
+  EXPECT_EQ(words->text, "goal at (1.0 2.0 3.0) reached, score 4.50: near; seen");
+  EXPECT_EQ(words->kind, "goal");
+  EXPECT_EQ(words->severity, Severity::info);
+  EXPECT_EQ(words_of(core::event::Safety{core::SafetyAction::land, "battery"})->severity, Severity::error);
+  EXPECT_FALSE(words_of(core::event::Frontiers{}));
+}
+
+}  // namespace
+}  // namespace karst::mcap
