@@ -8,6 +8,7 @@
 #include "sdk/mcap_export/flight_topics.h"
 #include "sdk/mcap_export/part_file.h"
 #include "sdk/mcap_export/picture_topics.h"
+#include "sdk/mcap_export/scan_topics.h"
 
 namespace karst::mcap {
 namespace {
@@ -58,6 +59,7 @@ McapExport export_mcap(const fs::path& directory, const fs::path& file, std::opt
   append(topics, event_topics(run, clock));
   topics.push_back(battery_topic(run, clock));
   append(topics, picture_topics(run, clock, problems));
+  append(topics, scan_topics(run, clock, problems));
 
   PartFile part(file);
   McapWriter writer(part.stream(), {.profile = "ros2", .library = "karst " + version});

@@ -307,6 +307,18 @@ struct Imu {
   }
 };
 
+struct MagneticField {
+  static constexpr const char* kType = "sensor_msgs/MagneticField";
+  Header header;
+  Vector3 magnetic_field;  // tesla
+  std::array<double, 9> magnetic_field_covariance{};
+  static constexpr auto members() {
+    return std::make_tuple(Field{"header", &MagneticField::header},
+                           Field{"magnetic_field", &MagneticField::magnetic_field},
+                           Field{"magnetic_field_covariance", &MagneticField::magnetic_field_covariance});
+  }
+};
+
 struct UVCoordinate {
   static constexpr const char* kType = "visualization_msgs/UVCoordinate";
   float u = 0;

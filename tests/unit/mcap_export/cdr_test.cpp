@@ -64,9 +64,11 @@ TEST(Cdr, AHeaderIsItsStampAndItsFrame) {
 }
 
 TEST(Cdr, MessagesBehindOtherBytesAreAlignedToTheirOwnBegin) {
+  Mixed message;
+  message.number = 2;
   std::string out = "x";
-  CdrWriter(out).put(Mixed{.number = 2});
-  EXPECT_EQ(out.substr(1), cdr_of(Mixed{.number = 2}));
+  CdrWriter(out).put(message);
+  EXPECT_EQ(out.substr(1), cdr_of(message));
 }
 
 }  // namespace

@@ -104,7 +104,9 @@ TEST_F(ExportMcap, OfFilesThatAreCutOffWhatCanBeReadIsExportedAndTheRestReported
   for (const char* name : {"trajectory.tum", "events.jsonl", "telemetry.csv", "map_growth.bin"})
     EXPECT_TRUE(reported(name)) << name;
   for (const TopicCount& t : made.topics)
-    if (t.name == "/odometry") EXPECT_EQ(t.messages, poses - 1);
+    if (t.name == "/odometry") {
+      EXPECT_EQ(t.messages, poses - 1);
+    }
 }
 
 TEST_F(ExportMcap, WithNothingButATrajectoryThereIsAPath) {
@@ -147,13 +149,37 @@ TEST_F(ExportMcap, PicturesThatAreMissingOrDamagedAreLeftOutAndReported) {
   std::ofstream(run_ / "frames/b.jpg") << "no picture";
   const McapExport made = exported();
   for (const TopicCount& t : made.topics)
-    if (t.name.starts_with("/camera")) EXPECT_EQ(t.messages, 1u) << t.name;
+    if (t.name.starts_with("/camera")) {
+      EXPECT_EQ(t.messages, 1u) << t.name;
+    }
   EXPECT_EQ(std::count_if(made.problems.begin(), made.problems.end(),
                           [](const std::string& p) {
                             return p.find("b.jpg") != std::string::npos ||
                                    p.find("frames.csv: picture 4") != std::string::npos;
                           }),
             2);
+}
+
+TEST_F(ExportMcap, ADamagedScanEndsItsTopicAndIsReported) {
+  fs::create_directories(run_ / "scans");
+  const std::string header =
+      "VERSION 0.7\nFIELDS x y z intensity t ring\nSIZE 4 4 4 4 4 2\nTYPE F F F F U U\nCOUNT 1 1 1 1 1 1\n"
+      "WIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary\n";
+  std::ofstream(run_ / "scans/recording.info")
+      << "scans \"*.pcd\"\nstamp { from names unit ns of start }\nimu { file imu.csv }\n";
+  std::ofstream(run_ / "scans/imu.csv") << "t,ax,ay,az,wx,wy,wz\n0.1,0,0,9.8,0,0,0\n0.2,0,0,9.8,0\n";
+  for (const char* name : {"100000000.pcd", "300000000.pcd"})
+    std::ofstream(run_ / "scans" / name) << header << std::string(22, '\0');
+  std::ofstream(run_ / "scans/200000000.pcd") << header << "cut";
+  const McapExport made = exported();
+  std::map<std::string, std::uint64_t> counts;
+  for (const TopicCount& t : made.topics) counts[t.name] = t.messages;
+  EXPECT_EQ(counts["/points"], 1u);
+  EXPECT_EQ(counts["/imu"], 1u);
+  for (const char* place : {"200000000.pcd", "imu.csv: line 3"})
+    EXPECT_TRUE(std::any_of(made.problems.begin(), made.problems.end(), [&](const std::string& p) {
+      return p.find(place) != std::string::npos && p.find("left out") != std::string::npos;
+    })) << place;
 }
 
 TEST(EventWords, TellStateAndReason) {

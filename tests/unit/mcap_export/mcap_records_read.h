@@ -107,7 +107,9 @@ inline std::vector<McapMessage> messages_of(std::string_view file) {
         topics[id] = c.text();
       }
       if (inside.opcode != 0x05) continue;
-      McapMessage m{topics.at(id), schemas.at(schema_of.at(id))};
+      McapMessage m;
+      m.topic = topics.at(id);
+      m.schema = schemas.at(schema_of.at(id));
       m.sequence = c.number<std::uint32_t>();
       m.time_ns = c.number<std::uint64_t>();
       c.number<std::uint64_t>();
