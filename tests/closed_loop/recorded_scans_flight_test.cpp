@@ -44,7 +44,8 @@ TEST(RecordedScans, AreTheSameOnAnyThreadsAndLeaveTheFlightAsItIs) {
                                   (folder / "one" / "ground_truth.tum").string());
   ASSERT_EQ(errors.code, 0) << errors.text;
   const auto evaluation = nlohmann::json::parse(bytes_of(folder / "replayed" / "evaluation.json"));
-  EXPECT_LT(evaluation.at("trajectory").at("ate_rmse_m").get<double>(), 0.2) << evaluation.dump(1);
+  EXPECT_LT(evaluation.at("trajectory").at("ape").at("translation_m").at("rmse").get<double>(), 0.05)
+      << evaluation.dump(1);
 
   // Exported, each scan is a message.
   const Output exported =
