@@ -52,7 +52,8 @@ TEST(RecordedScans, AreTheSameOnAnyThreadsAndLeaveTheFlightAsItIs) {
       run_karst("export " + (folder / "one").string() + " --json --mcap " + (folder / "one.mcap").string());
   ASSERT_EQ(exported.code, 0) << exported.text;
   std::size_t points = 0;
-  for (const auto& topic : nlohmann::json::parse(exported.text).at("topics"))
+  const auto summary = nlohmann::json::parse(exported.text);
+  for (const auto& topic : summary.at("topics"))
     if (topic.at("topic") == "/points") points = topic.at("messages");
   EXPECT_EQ(points, scans_in(folder / "one" / "scans"));
 }
