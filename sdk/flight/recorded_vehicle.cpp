@@ -73,28 +73,26 @@ void RecordedVehicle::record(const std::shared_ptr<const core::LidarScan>& scan)
     return;
   }
   last_begin_ = begin;
-  auto problem = std::make_shared<std::string>();
   const fs::path file = folder_ / format_text("%015lld.pcd", static_cast<long long>(begin));
   executive_->job(
       "scan file", core::Lane::pictures, kScanBudget,
-      [scan, file, problem, disk = disk_] {
+      [scan, file, problem = problem_, disk = disk_] {
         try {
           std::string bytes = pcd_of(*scan);
           if (!bytes.empty()) write_file(file, bytes, disk);
         } catch (const std::exception& e) {
-          *problem = e.what();
+          problem->note(e.what());
         }
       },
-      [this, problem] {
-        if (problem_.empty()) problem_ = *problem;
-      });
+      [] {});
 }
 
 void RecordedVehicle::on_imu(const core::ImuSample& s) {
   if (s.stamp > last_imu_) {
     const core::Vec3& w = s.body_rate_radps;
     imu_ << row(s.stamp, s.specific_force_mps2) << format_text(",%.9g,%.9g,%.9g\n", w.x(), w.y(), w.z());
-    if (s.stamp / core::kSecond != last_imu_ / core::kSecond) flush();
+    if (s.stamp / core::kSecond != last_imu_ / core::kSecond)
+      for (core::RecordFile* file : {&imu_, &compass_, &barometer_}) check(file->flush());
     last_imu_ = s.stamp;
   }
   sink_->on_imu(s);
@@ -110,21 +108,17 @@ void RecordedVehicle::on_barometer(const core::BarometerSample& s) {
   sink_->on_barometer(s);
 }
 
-void RecordedVehicle::flush() {
-  for (core::RecordFile* file : {&imu_, &compass_, &barometer_})
-    if (!file->flush() && problem_.empty())
-      problem_ = folder_.string() + ": cannot be written; is the disk full?";
+void RecordedVehicle::check(bool written) {
+  if (!written) problem_->note(folder_.string() + ": cannot be written; is the disk full?");
 }
 
 void RecordedVehicle::finish() {
   vehicle_.finish();
-  for (core::RecordFile* file : {&imu_, &compass_, &barometer_})
-    if (!file->close() && problem_.empty())
-      problem_ = folder_.string() + ": cannot be written; is the disk full?";
-  if (problem_.empty() && scans_lost_ > 0)
-    problem_ = folder_.string() + ": " + std::to_string(scans_lost_) +
-               " scans came faster than they could be written, and are lost";
-  if (!problem_.empty()) throw std::runtime_error(problem_);
+  for (core::RecordFile* file : {&imu_, &compass_, &barometer_}) check(file->close());
+  if (scans_lost_ > 0)
+    problem_->note(folder_.string() + ": " + std::to_string(scans_lost_) +
+                   " scans came faster than they could be written, and are lost");
+  if (const std::string problem = problem_->text(); !problem.empty()) throw std::runtime_error(problem);
 }
 
 }  // namespace karst::flight

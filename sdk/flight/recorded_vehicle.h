@@ -1,12 +1,30 @@
 // A vehicle whose sensors are recorded into the folder scans of the run directory: the option record.scans.
 #pragma once
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "core_stack/mission/recording/recorder.h"
 #include "core_stack/vehicle/vehicle.h"
 
 namespace karst::flight {
+
+/// The first of several problems, whichever thread meets it.
+class FirstProblem {
+ public:
+  void note(const std::string& problem) {
+    const std::lock_guard lock(mutex_);
+    if (text_.empty()) text_ = problem;
+  }
+  std::string text() const {  // "" if there was none
+    const std::lock_guard lock(mutex_);
+    return text_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::string text_;
+};
 
 /// Passes everything on, unchanged and at the same time, and writes what the sensors say: in real time by the
 /// recorder's disk thread. Scans are encoded in jobs of the pictures' lane, as the loop must not wait for
@@ -43,7 +61,7 @@ class RecordedVehicle : public core::Vehicle, private core::VehicleSink {
   }
 
   void record(const std::shared_ptr<const core::LidarScan>& scan);
-  void flush();
+  void check(bool written);
 
   core::Vehicle& vehicle_;
   core::Executive* executive_ = nullptr;
@@ -54,7 +72,7 @@ class RecordedVehicle : public core::Vehicle, private core::VehicleSink {
   core::TimeNs last_begin_ = -1;  // of the scan before
   core::TimeNs last_imu_ = -1;
   std::size_t scans_lost_ = 0;
-  std::string problem_;  // the first; "" if there was none
+  const std::shared_ptr<FirstProblem> problem_ = std::make_shared<FirstProblem>();
 };
 
 }  // namespace karst::flight

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core_stack/common/format_text.h"
 #include "sdk/mcap_export/event_words.h"
@@ -165,6 +166,26 @@ Topic drawing_topic(const Events& events, const FlightClock& clock) {
   return topic_of<ros::MarkerArray>("/drawings", clock, std::move(out));
 }
 
+/// What is known of the objects of interest at each event of one.
+Topic object_topic(const Events& events, const FlightClock& clock) {
+  std::vector<std::pair<double, ros::MarkerArray>> out;
+  std::map<std::uint32_t, event::Object> known;
+  for_each<event::Object>(events, [&](double t_s, const event::Object& object) {
+    if (object.state == core::ObjectState::withdrawn)
+      known.erase(object.number);
+    else if (object.position)
+      known[object.number] = object;
+    Markers markers({clock.stamp(t_s), kMapFrame});
+    for (const auto& [number, o] : known) {
+      markers.sphere("object", number, *o.position, 0.4, kReached);
+      markers.text("what", number, *o.position + Vec3(0, 0, 0.5),
+                   core::format_text("%u: %s", number, o.what ? core::name_of(*o.what) : "object"), kText);
+    }
+    out.emplace_back(t_s, markers.take());
+  });
+  return topic_of<ros::MarkerArray>("/objects", clock, std::move(out));
+}
+
 /// The phase as text above the vehicle: RViz shows no log.
 Topic phase_topic(const Events& events, const FlightClock& clock) {
   std::vector<std::pair<double, ros::MarkerArray>> out;
@@ -193,7 +214,8 @@ Topic log_topic(const Events& events, const FlightClock& clock) {
 std::vector<Topic> event_topics(const RunRecord& run, const FlightClock& clock) {
   const Events events = events_of(run);
   return {plan_topic(events, clock),    frontier_topic(events, clock), goal_topic(events, clock),
-          drawing_topic(events, clock), phase_topic(events, clock),    log_topic(events, clock)};
+          drawing_topic(events, clock), object_topic(events, clock),   phase_topic(events, clock),
+          log_topic(events, clock)};
 }
 
 }  // namespace karst::mcap

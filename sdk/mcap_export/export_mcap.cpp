@@ -55,7 +55,7 @@ McapExport export_mcap(const fs::path& directory, const fs::path& file, std::opt
   const double recorded_s = run.number("replay.time_origin").value_or(0);
   const FlightClock clock{epoch.value_or(core::from_seconds(recorded_s))};
   std::vector<Topic> topics = pose_topics(run, clock);
-  append(topics, map_topics(run, clock));
+  append(topics, map_topics(run, clock, problems));
   append(topics, event_topics(run, clock));
   topics.push_back(battery_topic(run, clock));
   append(topics, picture_topics(run, clock, problems));

@@ -12,9 +12,10 @@ constexpr const char *kMapFrame = "map", *kBodyFrame = "base_link", *kTrueBodyFr
 
 /// /tf, /odometry, /path and, of a simulated flight, /truth/odometry.
 std::vector<Topic> pose_topics(const evaluation::RunRecord& run, const FlightClock& clock);
-/// /map, /map/new.
-std::vector<Topic> map_topics(const evaluation::RunRecord& run, const FlightClock& clock);
-/// /plan, /frontiers, /goals, /drawings, /phase, /events.
+/// /map, /map/new. A stored map that cannot be read is added to `problems`.
+std::vector<Topic> map_topics(const evaluation::RunRecord& run, const FlightClock& clock,
+                              std::vector<std::string>& problems);
+/// /plan, /frontiers, /goals, /drawings, /objects, /phase, /events.
 std::vector<Topic> event_topics(const evaluation::RunRecord& run, const FlightClock& clock);
 /// /battery.
 Topic battery_topic(const evaluation::RunRecord& run, const FlightClock& clock);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
 #include "sdk/mcap_export/flight_topics.h"
 #include "sdk/mcap_export/point_cloud.h"
@@ -13,7 +14,6 @@ using evaluation::RunRecord;
 using ros::PointType;
 
 constexpr double kStep_s = 1;  // of /map/new
-constexpr const char* kFinalMap = "map.bt";
 
 ros::PointCloud2 cloud_at(double t_s, const FlightClock& clock) {
   return ros::empty_cloud({clock.stamp(t_s), kMapFrame}, {{"x", PointType::float32},
@@ -40,17 +40,30 @@ double since_s(const RunRecord& run, const core::CellKey& key) {
   return seconds_of((after - 1)->from_ms);
 }
 
-/// The map as stored at the end, after the last of its growth.
-ros::PointCloud2 final_map(const RunRecord& run, const FlightClock& clock, double end_s) {
-  ros::PointCloud2 cloud = cloud_at(end_s, clock);
-  const core::VoxelMap map = core::read_octomap((run.directory / kFinalMap).string());
+using StoredMap = std::shared_ptr<const core::VoxelMap>;
+
+/// Null without one, and for one that cannot be read, which is reported.
+StoredMap stored_map(const RunRecord& run, std::vector<std::string>& problems) {
+  const std::filesystem::path file = run.directory / "map.bt";
+  if (!std::filesystem::exists(file)) return nullptr;
+  try {
+    return std::make_shared<const core::VoxelMap>(core::read_octomap(file.string()));
+  } catch (const core::InputError& e) {
+    problems.push_back(e.what());
+    return nullptr;
+  }
+}
+
+ros::PointCloud2 cloud_of(const core::VoxelMap& map, const RunRecord& run, const FlightClock& clock,
+                          double t_s) {
+  ros::PointCloud2 cloud = cloud_at(t_s, clock);
   map.for_each_known([&](const core::CellKey& key, core::Cell cell, float) {
     if (cell == core::Cell::occupied) append_cell(cloud, key, map.resolution_m(), since_s(run, key));
   });
   return ros::finished(std::move(cloud));
 }
 
-ros::PointCloud2 map_at(const RunRecord& run, const FlightClock& clock, double t_s) {
+ros::PointCloud2 grown_until(const RunRecord& run, const FlightClock& clock, double t_s) {
   ros::PointCloud2 cloud = cloud_at(t_s, clock);
   for (const OccupiedSpan& s : run.growth)
     if (seconds_of(s.from_ms) <= t_s && seconds_of(s.until_ms) > t_s)
@@ -59,17 +72,18 @@ ros::PointCloud2 map_at(const RunRecord& run, const FlightClock& clock, double t
 }
 
 /// Whole maps, the last as it was stored. Without the growth, that one alone.
-Topic whole_maps(const RunRecord& run, const FlightClock& clock, bool is_stored) {
+Topic whole_maps(const RunRecord& run, const FlightClock& clock, const StoredMap& stored) {
   const double end_s = run.last_time_s();
-  const std::vector<double> times = !run.growth.empty() ? snapshot_times(end_s)
-                                    : is_stored         ? std::vector<double>{end_s}
-                                                        : std::vector<double>{};
-  return topic_of<ros::PointCloud2>(
-      "/map", clock, times.size(), [&run, clock, times, is_stored](std::size_t i) {
-        const bool last = i + 1 == times.size();
-        return std::pair(times[i],
-                         last && is_stored ? final_map(run, clock, times[i]) : map_at(run, clock, times[i]));
-      });
+  std::vector<double> times;
+  if (!run.growth.empty())
+    times = snapshot_times(end_s);
+  else if (stored)
+    times = {end_s};
+  return topic_of<ros::PointCloud2>("/map", clock, times.size(), [&run, clock, times, stored](std::size_t i) {
+    const bool last = i + 1 == times.size();
+    return std::pair(times[i], last && stored ? cloud_of(*stored, run, clock, times[i])
+                                              : grown_until(run, clock, times[i]));
+  });
 }
 
 /// Cells that became occupied within each step, told at its end.
@@ -98,10 +112,10 @@ Topic new_cells(const RunRecord& run, const FlightClock& clock) {
 
 }  // namespace
 
-std::vector<Topic> map_topics(const RunRecord& run, const FlightClock& clock) {
-  const bool is_stored = std::filesystem::exists(run.directory / kFinalMap);
+std::vector<Topic> map_topics(const RunRecord& run, const FlightClock& clock,
+                              std::vector<std::string>& problems) {
   std::vector<Topic> topics;
-  topics.push_back(whole_maps(run, clock, is_stored));
+  topics.push_back(whole_maps(run, clock, stored_map(run, problems)));
   topics.push_back(new_cells(run, clock));
   return topics;
 }

@@ -24,8 +24,8 @@ struct WriterOptions {
   std::size_t chunk_bytes = std::size_t{1} << 20;  // a chunk ends with the message that reaches them
 };
 
-/// Chunks are compressed by zstd: at its level 3 a flight's file is a quarter to a third smaller than with lz4
-/// (docs/results/mcap_export.md), and readers of MCAP know both.
+/// Chunks are compressed by zstd: at its level 3 a flight's file is a quarter to a third smaller than with
+/// lz4 (docs/results/mcap_export.md), and readers of MCAP know both.
 class McapWriter {
  public:
   /// `out` is empty and outlives the writer. Nothing is thrown if it fails: see good().

@@ -39,6 +39,15 @@ ros::PointCloud2 cloud_of(const replay::Scan& scan, const ros::Time& stamp) {
   return ros::finished(std::move(cloud));
 }
 
+template <class F>
+void attempt(std::vector<std::string>& problems, const F& f) {
+  try {
+    f();
+  } catch (const core::InputError& e) {
+    problems.push_back(e.what());
+  }
+}
+
 /// `next` until it throws: what is wrong with a file is reported, and ends its topic.
 Source reporting(Source next, std::vector<std::string>& problems) {
   return [next = std::move(next), &problems, over = false]() mutable -> std::optional<StampedBytes> {
@@ -109,12 +118,19 @@ std::vector<Topic> scan_topics(const evaluation::RunRecord& run, const FlightClo
                                std::vector<std::string>& problems) {
   const fs::path folder = run.directory / "scans";
   if (!fs::is_directory(folder)) return {};
-  const auto recording = std::make_shared<const replay::Recording>(replay::open_recording(folder, ""));
   std::vector<Topic> topics;
-  topics.push_back(static_transform(clock, kBodyFrame, kLidarFrame, recording->layout.T_body_lidar));
-  topics.push_back(point_topic(recording, clock, problems));
-  if (auto imu = replay::open_imu(*recording))
-    topics.push_back(imu_topic(std::make_shared<replay::ImuFile>(std::move(*imu)), clock, problems));
+  if (fs::exists(folder / "recording.info"))  // else the vehicle has no LiDAR
+    attempt(problems, [&] {
+      const auto recording = std::make_shared<const replay::Recording>(replay::open_recording(folder, ""));
+      topics.push_back(static_transform(clock, kBodyFrame, kLidarFrame, recording->layout.T_body_lidar));
+      topics.push_back(point_topic(recording, clock, problems));
+    });
+  attempt(problems, [&] {
+    topics.push_back(
+        imu_topic(std::make_shared<replay::ImuFile>((folder / "imu.csv").string(), "t ax ay az wx wy wz",
+                                                    core::kSecond, core::Quat::Identity()),
+                  clock, problems));
+  });
   topics.push_back(compass_topic(folder / "compass.csv", clock, problems));
   return topics;
 }

@@ -8,8 +8,8 @@
 namespace karst::mcap {
 
 /// Of the folder scans: /points, /imu, /compass, and the LiDAR's place in /tf_static. None if there is no
-/// such folder. The files are read one by one. Throws core::InputError if the folder is no recording; what is
-/// damaged ends its topic, and is added to `problems` when the topic comes to it: both outlive the topics.
+/// such folder. The files are read one by one. What is damaged ends its topic, and is added to `problems`
+/// when the topic comes to it: it outlives the topics.
 std::vector<Topic> scan_topics(const evaluation::RunRecord& run, const FlightClock& clock,
                                std::vector<std::string>& problems);
 

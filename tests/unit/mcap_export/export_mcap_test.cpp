@@ -2,8 +2,10 @@
 #include "sdk/mcap_export/export_mcap.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <set>
 
@@ -121,6 +123,77 @@ TEST_F(ExportMcap, WithNothingButATrajectoryThereIsAPath) {
 TEST_F(ExportMcap, AFullDiskIsAnErrorWithItsReason) {
   EXPECT_NE(error("/dev/full").find("/dev/full: cannot be written: No space left"), std::string::npos)
       << error("/dev/full");
+}
+
+/// Files of this process may not grow beyond a size, as on a disk that is full.
+class SmallFiles {
+ public:
+  explicit SmallFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  SmallFiles(const SmallFiles&) = delete;
+  SmallFiles& operator=(const SmallFiles&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST_F(ExportMcap, OfAFileThatDoesNotFitNothingRemainsAndTheOldOneStays) {
+  for (const rlim_t bytes : {10u, 5'000u, 20'000u}) {
+    const SmallFiles small(bytes);
+    EXPECT_NE(error(file_).find("a.mcap: cannot be written: File too large"), std::string::npos)
+        << error(file_);
+    EXPECT_EQ(files(), 0u);
+  }
+  exported();
+  const std::string whole = bytes_of(file_);
+  ASSERT_GT(whole.size(), 20'000u);
+  {
+    const SmallFiles small(5'000);
+    EXPECT_NE(error(file_), "");
+  }
+  EXPECT_EQ(bytes_of(file_), whole);
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(ExportMcap, AStoredMapThatIsDamagedIsReportedAndItsGrowthExported) {
+  std::ofstream(run_ / "map.bt") << "# Octomap OcTree binary file\nid OcTree\nsize 100\nres 0.2\ndata\nx";
+  const McapExport made = exported();
+  EXPECT_TRUE(std::any_of(made.problems.begin(), made.problems.end(),
+                          [](const std::string& p) { return p.find("map.bt") != std::string::npos; }));
+  EXPECT_TRUE(std::any_of(made.topics.begin(), made.topics.end(),
+                          [](const TopicCount& t) { return t.name == "/map" && t.messages > 1; }));
+}
+
+TEST_F(ExportMcap, OfATeamOneRobotIsNamed) {
+  const fs::path team = folder_.path() / "team";
+  fs::create_directories(team / "robot_1");
+  std::ofstream(team / "team.jsonl") << "";
+  try {
+    export_mcap(team, file_, {}, "1");
+    ADD_FAILURE() << "a team was exported";
+  } catch (const core::InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("team/robot_1"), std::string::npos) << e.what();
+  }
+}
+
+TEST_F(ExportMcap, OfAVehicleWithoutALidarTheImuIsExported) {
+  fs::create_directories(run_ / "scans");
+  std::ofstream(run_ / "scans/imu.csv") << "t,ax,ay,az,wx,wy,wz\n0.1,0,0,9.8,0,0,0\n";
+  const McapExport made = exported();
+  std::map<std::string, std::uint64_t> counts;
+  for (const TopicCount& t : made.topics) counts[t.name] = t.messages;
+  EXPECT_EQ(counts["/imu"], 1u);
+  EXPECT_FALSE(counts.contains("/points"));
+  EXPECT_TRUE(std::none_of(made.problems.begin(), made.problems.end(),
+                           [](const std::string& p) { return p.find("scans") != std::string::npos; }));
 }
 
 TEST_F(ExportMcap, AFileThatCannotBeMadeIsAnErrorAndLeavesNothing) {

@@ -170,6 +170,7 @@ events.filter((e) => e.kind === 'goal').forEach((e, i) => {
   check(text.startsWith(e.state) && text.includes(e.why) && text.includes(e.score.toFixed(2)), `goal ${i}: ${text}`);
 });
 check(of('/events').length === events.filter((e) => !['frontiers', 'drawing'].includes(e.kind)).length, 'log');
+check(of('/objects').length === count_of('object'), 'objects');
 check(of('/phase').length === count_of('phase'), 'phases');
 const battery = of('/battery');
 check(battery.every((b) => b.percentage > 0 && b.percentage <= 1), 'battery');
