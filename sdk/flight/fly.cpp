@@ -15,6 +15,7 @@
 #include "sdk/evaluation/team/run_ending.h"
 #include "sdk/flight/known_survey.h"
 #include "sdk/flight/real_time.h"
+#include "sdk/flight/recorded_vehicle.h"
 #include "sdk/flight/run_files.h"
 #include "sdk/flight/status_line.h"
 #include "sdk/flight/team_metrics.h"
@@ -85,6 +86,7 @@ struct MissionFlight::Running {
   std::vector<std::unique_ptr<RunClaim>> own_claims;  // of a team's members, in folders below
   std::vector<std::unique_ptr<core::Recorder>> recorders;
   Vehicles vehicles;
+  std::vector<std::unique_ptr<RecordedVehicle>> recorded;  // with record.scans
   std::optional<host::RecordingPolicy> recording;
   std::optional<TeamFlight> team;
   std::optional<Lockstep> lockstep;
@@ -135,6 +137,9 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
                                                                     : core::Durability::survives_a_crash));
   }
   r.vehicles = make_vehicles(mission_, members_, run_dir, request_.clock);
+  if (mission_.record.scans)
+    for (std::size_t i = 0; i < members_.size(); ++i)
+      r.recorded.push_back(std::make_unique<RecordedVehicle>(r.vehicles[i], *r.recorders[i]));
   write_mission(run_dir / "mission.info", as_flown(mission_));
   if (r.vehicles.world) {
     for (std::size_t i = 0; i < members_.size(); ++i) {
@@ -155,6 +160,7 @@ std::vector<Seat> MissionFlight::seats() const {
   std::vector<Seat> seats;
   for (std::size_t i = 0; i < members_.size(); ++i) {
     Seat seat{&r.vehicles[i], loaded_.policies[i].get(), r.recorders[i].get()};
+    if (!r.recorded.empty()) seat.vehicle = r.recorded[i].get();
     if (r.recording) seat.policy = &*r.recording;
     if (r.team) {
       seat.teamwork = &r.team->teamwork(i);

@@ -53,6 +53,12 @@ void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr)
           "tell the policy of it; false: only what the survey lacks is counted, for comparisons");
   });
   t.section(kRegionSection, m.region);
+  t.under("record", [&m](OptionTable& r) {
+    r.add("scans", m.record.scans,
+          "keep the vehicle's scans, IMU, compass and barometer in the folder scans of the run directory, "
+          "which "
+          "karst replay reads; a scan has up to 22 bytes a point");
+  });
   t.under("policy", [&m, auto_keys](OptionTable& p) {
     p.add("name", m.policy, {},
           "the exploration policy; `karst policy list` shows what there is; auto: selected by policy.auto");

@@ -43,12 +43,18 @@ struct SurveyKeys {
   bool hints = true;
 };
 
+/// What of the vehicle's messages the flight keeps (docs/run_directory.md).
+struct RecordKeys {
+  bool scans = false;
+};
+
 struct Mission {
   std::string file;  // as named, for messages
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
   core::MeshKeys mesh;  // of a cave that is a bare mesh
   SurveyKeys survey;
   core::RegionKeys region;
+  RecordKeys record;
   std::int64_t seed = 1, policy_stream = 0;
   PolicyIsolation policy_isolation = PolicyIsolation::where_possible;
   double policy_cpu_limit_s = 10, policy_hang_limit_s = 60;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
 #include <string>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "core_stack/common/rounded.h"
 #include "core_stack/common/shell_word.h"
 #include "plugins/simulator/cave/cave_blocks.h"
+#include "sdk/mcap_export/export_mcap.h"
 #include "sdk/survey_export/export_run.h"
 #include "sdk/survey_export/geographic_system.h"
 #include "sdk/survey_export/leg_words.h"
@@ -30,8 +32,9 @@ using survey_export::RunSurvey;
 using survey_export::WallMesh;
 
 struct ExportArguments {
-  std::string run, out, fix, system, prior;
+  std::string run, out, mcap, fix, system, prior;
   double declination_deg = 0;
+  std::optional<double> epoch_s;
   bool no_fix = false, force = false, json = false;
 };
 
@@ -177,20 +180,74 @@ void export_survey(const ExportArguments& args) {
     print(run, walls, args);
 }
 
+nlohmann::ordered_json json_of(const mcap::McapExport& made, const std::string& file) {
+  nlohmann::ordered_json topics = nlohmann::ordered_json::array();
+  for (const mcap::TopicCount& t : made.topics)
+    topics.push_back({{"topic", t.name}, {"type", t.type}, {"messages", t.messages}});
+  return {{"schema", "karst.export_mcap/1"},
+          {"file", file},
+          {"bytes", made.bytes},
+          {"messages", made.messages},
+          {"duration_s", core::to_millionths(made.duration_s)},
+          {"epoch_s", core::to_millionths(core::seconds(made.epoch))},
+          {"topics", topics},
+          {"problems", made.problems}};
+}
+
+void export_mcap_file(const ExportArguments& args) {
+  std::error_code ignored;
+  if (fs::is_directory(args.mcap, ignored))
+    throw InputError("command line", "--mcap", "expected a file, got a folder: " + args.mcap);
+  if (fs::is_regular_file(args.mcap, ignored) && !args.force)
+    throw InputError(args.mcap, "", "is there already; choose another --mcap, or give --force");
+  const auto epoch = args.epoch_s ? std::optional(core::from_seconds(*args.epoch_s)) : std::nullopt;
+  const mcap::McapExport made = mcap::export_mcap(args.run, args.mcap, epoch, KARST_VERSION);
+  if (args.json) return print_json(json_of(made, args.mcap));
+  print_out("%s: %.1f s, %s messages, %.1f MB\n", args.mcap.c_str(), made.duration_s,
+            core::grouped(made.messages).c_str(), static_cast<double>(made.bytes) / 1e6);
+  for (const mcap::TopicCount& t : made.topics)
+    print_out("  %-32s %-32s %9s\n", t.name.c_str(), t.type.c_str(), core::grouped(t.messages).c_str());
+  for (const std::string& problem : made.problems) print_error("%s\n", problem.c_str());
+}
+
+void export_run(const ExportArguments& args) {
+  if (args.out.empty() && args.mcap.empty())
+    throw InputError("command line", "", "expected --survey OUT or --mcap FILE: what to write");
+  if (args.json && !args.out.empty() && !args.mcap.empty())
+    throw InputError("command line", "--json", "expected one of --survey and --mcap");
+  if (!args.out.empty()) export_survey(args);
+  if (!args.mcap.empty()) export_mcap_file(args);
+}
+
 }  // namespace
 
 void add_export_command(CLI::App& app) {
   auto args = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Write what a flight found as a survey, with its walls");
+  CLI::App* command = app.add_subcommand(
+      "export", "Write a flight for other programs: as a survey with its walls, or as an MCAP file");
   command->add_option("run", args->run, "Run directory")->type_name(kFolder)->required();
+  auto* survey =
+      command
+          ->add_option(
+              "--survey", args->out,
+              "Path without ending: writes OUT.svx (Survex), OUT.th, OUT.thconfig and OUT_scan.th (Therion), "
+              "OUT.stl and OUT.ply (walls), OUT.las (points)")
+          ->type_name(kFile)
+          ->check(not_empty());
+  auto* mcap =
+      command
+          ->add_option(
+              "--mcap", args->mcap,
+              "Writes the whole flight as one file for Foxglove, RViz 2 and ros2 bag: poses, paths, map, "
+              "frontiers, goals, events, pictures, scans")
+          ->type_name(kFile)
+          ->check(not_empty());
   command
       ->add_option(
-          "--survey", args->out,
-          "Path without ending: writes OUT.svx (Survex), OUT.th, OUT.thconfig and OUT_scan.th (Therion), "
-          "OUT.stl and OUT.ply (walls), OUT.las (points)")
-      ->type_name(kFile)
-      ->required()
-      ->check(not_empty());
+          "--epoch", args->epoch_s,
+          "With --mcap: time since 1970 at flight time 0, s (default: 0; of a replay, the recording's)")
+      ->needs(mcap)
+      ->check(number_in(0, 2e9));
   auto* fix = command
                   ->add_option(
                       "--fix", args->fix,
@@ -202,30 +259,35 @@ void add_export_command(CLI::App& app) {
           ->add_option("--cs", args->system,
                        "Coordinate system of --fix, or of the mission's survey, such as EPSG:32633 or UTM33N")
           ->check(not_empty());
-  command
-      ->add_flag("--no-fix", args->no_fix,
-                 "Fix no station in OUT.svx and OUT.th, to equate one with a station of another survey")
-      ->excludes(fix)
-      ->excludes(system);
-  command
-      ->add_option(
-          "--prior", args->prior,
-          "Survey to compare with instead of the one that the run's mission.info names; none: with none")
-      ->type_name(kFile)
-      ->check(not_empty());
-  command
-      ->add_option(
-          "--declination", args->declination_deg,
-          "From north to the map's y axis, clockwise, degrees; with --cs, from the north of its grid")
-      ->check(number_in(-180, 180))
-      ->capture_default_str();
+  auto* no_fix =
+      command
+          ->add_flag("--no-fix", args->no_fix,
+                     "Fix no station in OUT.svx and OUT.th, to equate one with a station of another survey")
+          ->excludes(fix)
+          ->excludes(system);
+  auto* prior =
+      command
+          ->add_option(
+              "--prior", args->prior,
+              "Survey to compare with instead of the one that the run's mission.info names; none: with none")
+          ->type_name(kFile)
+          ->check(not_empty());
+  auto* declination =
+      command
+          ->add_option(
+              "--declination", args->declination_deg,
+              "From north to the map's y axis, clockwise, degrees; with --cs, from the north of its grid")
+          ->check(number_in(-180, 180))
+          ->capture_default_str();
   command->add_flag("--force", args->force, "Overwrite files that are there");
   command->add_flag("--json", args->json, "Write the summary as JSON");
   command->footer(
-      "Examples:\n  karst export runs/monday --survey surveys/monday\n"
+      "Examples:\n  karst export runs/monday --mcap monday.mcap\n"
+      "  karst export runs/monday --survey surveys/monday\n"
       "  karst export runs/monday --survey surveys/monday --fix \"451234.5 5078123.0 812.4\" --cs UTM33N "
       "--declination 3.1");
-  command->callback([args] { export_survey(*args); });
+  for (CLI::Option* of_survey : {fix, system, no_fix, prior, declination}) of_survey->needs(survey);
+  command->callback([args] { export_run(*args); });
 }
 
 }  // namespace karst::tools

@@ -51,20 +51,24 @@ DiskWriter::File DiskWriter::open(const fs::path& path) {
 
 bool DiskWriter::append(File file, std::string& bytes) {
   const std::lock_guard lock(mutex_);
-  return take(file, bytes);
+  return take({file, std::exchange(bytes, {})});
 }
 
 bool DiskWriter::try_append(File file, std::string& bytes) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  return !lock || take(file, bytes);
+  return !lock || take({file, std::exchange(bytes, {})});
 }
 
-bool DiskWriter::take(File file, std::string& bytes) {
-  if (pending_bytes_ + bytes.size() > kMaxPending) failed_ = true;
-  if (failed_ || over_) bytes.clear();
-  if (!bytes.empty()) {
-    pending_bytes_ += bytes.size();
-    pending_.push_back({file, std::exchange(bytes, {})});
+bool DiskWriter::write_whole(const fs::path& path, std::string& bytes) {
+  const std::lock_guard lock(mutex_);
+  return take({{}, std::exchange(bytes, {}), path});
+}
+
+bool DiskWriter::take(Pending pending) {
+  if (pending_bytes_ + pending.bytes.size() > kMaxPending) failed_ = true;
+  if (!failed_ && !over_ && !pending.bytes.empty()) {
+    pending_bytes_ += pending.bytes.size();
+    pending_.push_back(std::move(pending));
   }
   return !failed_;
 }
@@ -122,6 +126,10 @@ bool DiskWriter::write(const std::vector<Pending>& batch, std::set<FileId>& sync
   std::set<int> written;
   bool good = true;
   for (const Pending& p : batch) {
+    if (!p.whole.empty()) {
+      good = write_new(p, synced) && good;
+      continue;
+    }
     good = write_all(descriptors[p.file], p.bytes) && good;
     written.insert(descriptors[p.file]);
   }
@@ -132,6 +140,17 @@ bool DiskWriter::write(const std::vector<Pending>& batch, std::set<FileId>& sync
     if (is_synced && fstat(d, &is) == 0) synced.insert({is.st_dev, is.st_ino});
   }
   return good;
+}
+
+bool DiskWriter::write_new(const Pending& p, std::set<FileId>& synced) {
+  const int d = ::open(p.whole.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (d < 0) return false;
+  bool good = write_all(d, p.bytes);
+  const bool is_synced = fdatasync(d) == 0;
+  good = (is_synced || errno == EINVAL) && good;
+  struct stat is {};
+  if (is_synced && fstat(d, &is) == 0) synced.insert({is.st_dev, is.st_ino});
+  return ::close(d) == 0 && good;
 }
 
 /// What is not this writer's is synced as far as possible: the flight does not depend on it.

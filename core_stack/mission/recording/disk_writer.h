@@ -38,6 +38,8 @@ class DiskWriter {
   /// The same without ever waiting: while the thread looks at what there is, the bytes stay where they are,
   /// for the next call.
   bool try_append(File file, std::string& bytes);
+  /// A file that is written whole, by the thread, which makes it as well. Otherwise as append().
+  bool write_whole(const std::filesystem::path& path, std::string& bytes);
   /// Waits until everything is on the disk, and ends the thread. False if something is not.
   bool finish();
 
@@ -47,18 +49,20 @@ class DiskWriter {
   struct Pending {
     File file;
     std::string bytes;
+    std::filesystem::path whole = {};  // the file's path, if that is all of it
   };
   struct Seen {
     std::uintmax_t size = 0;
     std::int64_t changed_ns = 0;
   };
-  bool take(File file, std::string& bytes);
+  bool take(Pending pending);
   void run();
   using FileId = std::pair<dev_t, ino_t>;
   template <class Step>
   void guarded(const Step& step);
   void fail();
   bool write(const std::vector<Pending>& batch, std::set<FileId>& synced);
+  static bool write_new(const Pending& pending, std::set<FileId>& synced);
   void sync_others(const std::set<FileId>& synced);
   void sync(const std::filesystem::path& file);
   void sync_folder(const std::filesystem::path& folder);

@@ -72,6 +72,8 @@ class Recorder {
   /// Waits until all of it is where the durability says.
   bool close();
 
+  /// Writes further files of the directory; null if nothing must survive a power cut.
+  DiskWriter* disk() const { return disk_.get(); }
   const std::filesystem::path& directory() const { return directory_; }
 
  private:

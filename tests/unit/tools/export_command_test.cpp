@@ -131,7 +131,10 @@ TEST_F(ExportCommand, RefusesWhatItCannotUse) {
   EXPECT_TRUE(has(error_of([&] { run_with({"--cs", "UTM33N"}); }), "--cs: needs --fix"));
   EXPECT_THROW(run_with({"--fix", "1 2 3", "--no-fix"}), CLI::ParseError);
   EXPECT_THROW(run_with({"--declination", "north"}), CLI::ParseError);
-  EXPECT_THROW(run({"export", folder_}), CLI::ParseError);
+  EXPECT_TRUE(has(error_of([&] { run({"export", folder_}); }), "--survey OUT or --mcap FILE"));
+  EXPECT_THROW(run({"export", folder_, "--mcap", out_, "--declination", "3"}), CLI::ParseError);
+  EXPECT_THROW(run({"export", folder_, "--survey", out_, "--epoch", "3"}), CLI::ParseError);
+  EXPECT_THROW(run({"export", folder_, "--mcap", out_, "--epoch", "-1"}), CLI::ParseError);
   EXPECT_TRUE(has(error_of([&] {
                     run({"export", folder_ + "/none", "--survey", out_});
                   }),
@@ -140,6 +143,20 @@ TEST_F(ExportCommand, RefusesWhatItCannotUse) {
                     run({"export", folder_, "--survey", folder_ + "/map.bt/x"});
                   }),
                   "cannot be made"));
+}
+
+TEST_F(ExportCommand, WritesTheFlightAsOneFileAndSaysItsTopics) {
+  const std::string file = folder_ + "/flight.mcap";
+  const std::string said = run({"export", folder_, "--mcap", file});
+  EXPECT_TRUE(has(said, "/odometry")) << said;
+  EXPECT_TRUE(has(said, "nav_msgs/msg/Path")) << said;
+  EXPECT_TRUE(has(error_of([&] { run({"export", folder_, "--mcap", file}); }), "is there already"));
+  EXPECT_TRUE(has(error_of([&] { run({"export", folder_, "--mcap", folder_}); }), "got a folder"));
+  const auto j = nlohmann::json::parse(
+      run({"export", folder_, "--mcap", file, "--force", "--json", "--epoch", "1700000000"}));
+  EXPECT_EQ(j.at("schema"), "karst.export_mcap/1");
+  EXPECT_EQ(j.at("epoch_s"), 1.7e9);
+  EXPECT_EQ(j.at("bytes"), std::filesystem::file_size(file));
 }
 
 TEST_F(ExportCommand, ANameThatTherionDoesNotReadIsRefusedBeforeAnythingIsMade) {

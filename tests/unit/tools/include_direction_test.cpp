@@ -100,6 +100,13 @@ TEST(IncludeDirection, SurveysOfFlightsKnowTheRecordTheSurveyAndMeshFilesOnly) {
                                     "sdk/campaign", "sdk/selection", "sdk/tuning", "sdk/flight", "sdk/tools",
                                     "plugins/replay", "plugins/simulator/sensors", "CLI/"});
 }
+TEST(IncludeDirection, FilesOfFlightsForOtherProgramsKnowTheRecordAndRecordingsOnly) {
+  expect_none("sdk/mcap_export",
+              {"sdk/host", "sdk/survey", "sdk/survey_export", "sdk/campaign", "sdk/selection", "sdk/tuning",
+               "sdk/flight", "sdk/tools", "plugins/simulator", "CLI/"});
+  for (const char* below : {"sdk/evaluation", "sdk/host", "sdk/flight"})
+    expect_none(below, {"sdk/mcap_export"});
+}
 // Drawings are made of maps and surveys, whose missing dimensions are those of caves made of them: nothing
 // below knows of them.
 TEST(IncludeDirection, DrawingsKnowTheRecordTheSurveyAndItsPassagesOnly) {

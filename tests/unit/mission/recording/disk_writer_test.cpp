@@ -99,6 +99,21 @@ TEST(DiskWriter, SaysThatTheDiskIsFullAndWritesTheOtherFiles) {
   EXPECT_TRUE(more.empty()) << "what is lost needs no memory";
 }
 
+TEST(DiskWriter, WritesWholeFilesBesideThoseThatGrow) {
+  const fs::path dir = folder_of("disk_writer_whole");
+  DiskWriter disk(dir);
+  const auto grows = disk.open(dir / "grows");
+  std::string one = "one", two = "two", three(300'000, 'x'), lost = "lost";
+  EXPECT_TRUE(disk.append(grows, one));
+  EXPECT_TRUE(disk.write_whole(dir / "whole", three));
+  EXPECT_TRUE(three.empty());
+  EXPECT_TRUE(disk.append(grows, two));
+  disk.write_whole(dir / "none" / "such", lost);
+  EXPECT_FALSE(disk.finish()) << "a file that cannot be made shows at the end";
+  EXPECT_EQ(content_of(dir / "grows"), "onetwo");
+  EXPECT_EQ(content_of(dir / "whole"), std::string(300'000, 'x'));
+}
+
 TEST(DiskWriter, ABacklogDoesNotGrowWithoutBound) {
   const fs::path dir = folder_of("disk_writer_backlog");
   DiskWriter disk(dir);

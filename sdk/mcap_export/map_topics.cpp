@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core_stack/common/error.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
+#include "sdk/mcap_export/flight_topics.h"
+#include "sdk/mcap_export/point_cloud.h"
+
+namespace karst::mcap {
+namespace {
+
+using evaluation::OccupiedSpan;
+using evaluation::RunRecord;
+using ros::PointType;
+
+constexpr double kStep_s = 1;  // of /map/new
+
+ros::PointCloud2 cloud_at(double t_s, const FlightClock& clock) {
+  return ros::empty_cloud({clock.stamp(t_s), kMapFrame}, {{"x", PointType::float32},
+                                                          {"y", PointType::float32},
+                                                          {"z", PointType::float32},
+                                                          {"since", PointType::float32}});
+}
+
+/// The centre of a cell, and the flight time from which it has been occupied.
+void append_cell(ros::PointCloud2& cloud, const core::CellKey& key, double resolution_m, double since_s) {
+  for (const std::int32_t k : {key.x, key.y, key.z})
+    ros::append(cloud, static_cast<float>((k + 0.5) * resolution_m));
+  ros::append(cloud, static_cast<float>(since_s));
+}
+
+double seconds_of(std::int32_t ms) { return ms / 1000.0; }
+
+/// When a cell of the final map became occupied for good; NaN if the growth does not tell.
+double since_s(const RunRecord& run, const core::CellKey& key) {
+  const auto after =
+      std::upper_bound(run.growth.begin(), run.growth.end(), key,
+                       [](const core::CellKey& k, const OccupiedSpan& s) { return k < s.key; });
+  if (after == run.growth.begin() || (after - 1)->key != key) return std::nan("");
+  return seconds_of((after - 1)->from_ms);
+}
+
+using StoredMap = std::shared_ptr<const core::VoxelMap>;
+
+/// Null without one, and for one that cannot be read, which is reported.
+StoredMap stored_map(const RunRecord& run, std::vector<std::string>& problems) {
+  const std::filesystem::path file = run.directory / "map.bt";
+  if (!std::filesystem::exists(file)) return nullptr;
+  try {
+    return std::make_shared<const core::VoxelMap>(core::read_octomap(file.string()));
+  } catch (const core::InputError& e) {
+    problems.push_back(e.what());
+    return nullptr;
+  }
+}
+
+ros::PointCloud2 cloud_of(const core::VoxelMap& map, const RunRecord& run, const FlightClock& clock,
+                          double t_s) {
+  ros::PointCloud2 cloud = cloud_at(t_s, clock);
+  map.for_each_known([&](const core::CellKey& key, core::Cell cell, float) {
+    if (cell == core::Cell::occupied) append_cell(cloud, key, map.resolution_m(), since_s(run, key));
+  });
+  return ros::finished(std::move(cloud));
+}
+
+ros::PointCloud2 grown_until(const RunRecord& run, const FlightClock& clock, double t_s) {
+  ros::PointCloud2 cloud = cloud_at(t_s, clock);
+  for (const OccupiedSpan& s : run.growth)
+    if (seconds_of(s.from_ms) <= t_s && seconds_of(s.until_ms) > t_s)
+      append_cell(cloud, s.key, run.map_resolution_m(), seconds_of(s.from_ms));
+  return ros::finished(std::move(cloud));
+}
+
+/// Whole maps, the last as it was stored. Without the growth, that one alone.
+Topic whole_maps(const RunRecord& run, const FlightClock& clock, const StoredMap& stored) {
+  const double end_s = run.last_time_s();
+  std::vector<double> times;
+  if (!run.growth.empty())
+    times = snapshot_times(end_s);
+  else if (stored)
+    times = {end_s};
+  return topic_of<ros::PointCloud2>("/map", clock, times.size(), [&run, clock, times, stored](std::size_t i) {
+    const bool last = i + 1 == times.size();
+    return std::pair(times[i], last && stored ? cloud_of(*stored, run, clock, times[i])
+                                              : grown_until(run, clock, times[i]));
+  });
+}
+
+/// Cells that became occupied within each step, told at its end.
+Topic new_cells(const RunRecord& run, const FlightClock& clock) {
+  auto spans = std::make_shared<std::vector<const OccupiedSpan*>>();
+  for (const OccupiedSpan& s : run.growth) spans->push_back(&s);
+  std::stable_sort(spans->begin(), spans->end(),
+                   [](const auto* a, const auto* b) { return a->from_ms < b->from_ms; });
+  const auto step_of = [](const OccupiedSpan* s) {
+    return static_cast<std::int64_t>(std::ceil(seconds_of(s->from_ms) / kStep_s));
+  };
+  std::vector<std::size_t> begins;  // of the steps, in the spans
+  for (std::size_t i = 0; i < spans->size(); ++i)
+    if (i == 0 || step_of((*spans)[i]) != step_of((*spans)[i - 1])) begins.push_back(i);
+  const std::size_t steps = begins.size();
+  begins.push_back(spans->size());
+  return topic_of<ros::PointCloud2>(
+      "/map/new", clock, steps, [&run, clock, spans, begins, step_of](std::size_t i) {
+        const double t_s = static_cast<double>(step_of((*spans)[begins[i]])) * kStep_s;
+        ros::PointCloud2 cloud = cloud_at(t_s, clock);
+        for (std::size_t k = begins[i]; k < begins[i + 1]; ++k)
+          append_cell(cloud, (*spans)[k]->key, run.map_resolution_m(), seconds_of((*spans)[k]->from_ms));
+        return std::pair(t_s, ros::finished(std::move(cloud)));
+      });
+}
+
+}  // namespace
+
+std::vector<Topic> map_topics(const RunRecord& run, const FlightClock& clock,
+                              std::vector<std::string>& problems) {
+  std::vector<Topic> topics;
+  topics.push_back(whole_maps(run, clock, stored_map(run, problems)));
+  topics.push_back(new_cells(run, clock));
+  return topics;
+}
+
+}  // namespace karst::mcap

@@ -1,0 +1,16 @@
+// The scans and the IMU that a flight recorded (record.scans).
+#pragma once
+#include <vector>
+
+#include "sdk/evaluation/record/run_record.h"
+#include "sdk/mcap_export/topic.h"
+
+namespace karst::mcap {
+
+/// Of the folder scans: /points, /imu, /compass, and the LiDAR's place in /tf_static. None if there is no
+/// such folder. The files are read one by one. What is damaged ends its topic, and is added to `problems`
+/// when the topic comes to it: it outlives the topics.
+std::vector<Topic> scan_topics(const evaluation::RunRecord& run, const FlightClock& clock,
+                               std::vector<std::string>& problems);
+
+}  // namespace karst::mcap
