@@ -56,6 +56,7 @@ class RecordedVehicle : public core::Vehicle, private core::VehicleSink {
   void on_authority(core::TimeNs stamp, core::Authority who, const std::string& why) override {
     sink_->on_authority(stamp, who, why);
   }
+  void on_gap() override { sink_->on_gap(); }
   void on_lost(core::TimeNs stamp, core::MissionOutcome outcome, const std::string& reason) override {
     sink_->on_lost(stamp, outcome, reason);
   }
