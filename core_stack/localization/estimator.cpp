@@ -23,7 +23,7 @@ constexpr double kHeightKnown_m = 0.03;
 constexpr TimeNs kStale = 200 * kMillisecond;
 /// Between two samples of an IMU of 100 Hz or more, of which one may be lost.
 constexpr TimeNs kNoneMissing = 25 * kMillisecond;
-/// Between two samples, without a predicted one: the IMU's clock was set.
+/// So much time without a sample hides a motion.
 constexpr TimeNs kLeap = 300 * kMillisecond;
 /// Factor on the noise of samples predicted from the commands. They include neither the wind (0.75 m/s^2 by
 /// drag in a gust of 5 m/s) nor the lag of the rates behind the command (0.25 rad/s while a turn begins), and
@@ -86,20 +86,21 @@ void Estimator::on_imu(const ImuSample& imu) {
   }
   if (lidar_.started() && imu.stamp <= last_imu_) return;
   if (!lidar_.started()) last_pose_ = imu.stamp;
-  const bool guessed = guessed_until_ > last_imu_, none_missing = imu.stamp - last_imu_ <= kNoneMissing;
-  const bool leaps = lidar_.started() && imu.stamp - state().stamp > kLeap;
+  const TimeNs missing = imu.stamp - last_imu_;
+  const bool guessed = guessed_until_ > last_imu_;
+  // Neither the IMU nor a prediction, or only a guess without a pose, tells what was flown.
+  const bool unseen = lidar_.started() && (imu.stamp - state().stamp > kLeap ||
+                                           (guessed && missing > kLeap && last_pose_ <= last_imu_));
   lidar_.on_imu(imu);
   magnetic_.on_imu(imu);
   if (newcomer_) newcomer_->on_imu(imu);
   if (state().stamp != imu.stamp) return;  // too old to take the place of what was predicted for its time
   last_imu_ = imu.stamp;
-  if (leaps) {
+  if (unseen) {
     lose_track();
-  } else if (guessed && none_missing) {  // they come late: what another did was measured
+  } else if (guessed) {
     guessed_until_ = imu.stamp;
-    poses_since_guess_ = kPosesThatTell;
-  } else if (guessed && imu.stamp - last_pose_ > from_seconds(options_.pose_timeout_s)) {
-    lose_track();  // the LiDAR did not see it either
+    if (missing <= kNoneMissing) poses_since_guess_ = before_guess_;  // it comes late: nothing was guessed
   }
 }
 
@@ -110,13 +111,14 @@ void Estimator::lose_track() {
   newcomer_.reset();
   refused_ = 0;
   track_lost_at_ = guessed_until_ = state().stamp;
-  poses_since_guess_ = 0;
+  poses_since_guess_ = before_guess_ = 0;
 }
 
 void Estimator::bridge(const ImuSample& expected, Expected how) {
   if (!lidar_.started() || !is_finite(expected) || expected.stamp <= state().stamp) return;
   const double noise = how == Expected::as_commanded ? kBridgeNoise : kAnotherSteersNoise;
   if (how == Expected::another_steers) {
+    if (guessed_until_ <= last_imu_) before_guess_ = poses_since_guess_;
     guessed_until_ = expected.stamp;
     poses_since_guess_ = 0;
   }

@@ -41,7 +41,8 @@ struct Diagnosis {
 class Estimator {
  public:
   Estimator(const EstimatorOptions& options, const Pose& T_world_start);
-  /// Ignores samples that are not finite or not newer than the last one measured.
+  /// Ignores samples that are not finite, not newer than the last one measured, or older than a second where
+  /// predicted ones are newer.
   void on_imu(const ImuSample& imu);
   /// While the IMU delivers no data: takes the measurement expected from the last command and the mass, or of
   /// a hover if another steers, who may do anything.
@@ -92,6 +93,7 @@ class Estimator {
   TimeNs guessed_until_ = std::numeric_limits<TimeNs>::min();  // the newest sample bridged for another
   static constexpr int kPosesThatTell = 2;
   int poses_since_guess_ = kPosesThatTell;  // accepted; or more
+  int before_guess_ = kPosesThatTell;       // the same when the guess began
   TimeNs last_bad_input_ = std::numeric_limits<TimeNs>::min();
 };
 

@@ -17,7 +17,7 @@ constexpr TimeNs kAhead = 50 * kMillisecond;  // poses newer than the IMU by mor
 constexpr double kStartPosition = 0.05, kStartVelocity = 0.05, kStartAngle = 0.02, kStartAccelBias = 0.2,
                  kStartGyroBias = 0.02;
 constexpr double kRestartVelocity = 0.3;
-// After seconds in which another steered.
+// After a time in which nobody measured: of a second or more, at 2 m/s.
 constexpr double kLostPosition = 3, kLostVelocity = 1.5, kLostTilt = 0.2, kLostHeading = 0.8;
 
 // Indices of the blocks of the error state.

@@ -16,6 +16,7 @@ constexpr int kRefinements = 2;                      // of a sweep's motion if t
 constexpr double kSameMotion = 0.01;                 // m: if the motion changes less, the sweep is kept
 constexpr double kRockDistance = 5;                  // m: range at which the effect of a rotation is measured
 constexpr double kNearlyAll = 0.7;                   // of a sweep's features on the map
+constexpr double kBraking = 0.5;                     // s of flight: the way in which it brakes
 constexpr double kLongGap = 0.5;                     // s without a pose, after which a prediction is weak
 
 bool is_measurement(const SweepPoint& p) {
@@ -145,7 +146,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
   const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
     return fit_to_map(cloud, map, guess, first_level, options_.registration, workspace_);
   };
-  const bool gap = gap_ || since_s > kLongGap, weak = !prediction.covered || gap;
+  const bool weak = !prediction.covered || since_s > kLongGap || gap_;
   const bool scan_to_scan =
       options_.scan_to_scan == ScanToScan::always || (options_.scan_to_scan == ScanToScan::automatic && weak);
   Pose guess = prediction.T_world_body;
@@ -154,18 +155,21 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
     if (with_last.good) guess = with_last.T_world_body;
   }
   Fit found = fit(map_, guess, weak ? coarsest : 0);
-  // What nobody saw may have been flown as predicted; or the vehicle stopped, and nearly all is where it was.
+  // What nobody saw may have been flown as predicted; or the vehicle braked, and nearly all is where it was.
   Pose expected = prediction.T_world_body;
-  if (gap) {
-    const Fit stayed = fit(map_, T_world_last_, coarsest);
-    if (stayed.good &&
-        stayed.matched_fraction > std::max(kNearlyAll, found.good ? found.matched_fraction : 0)) {
+  if (gap_) {
+    for (const double after_s : {0.0, kBraking}) {
+      const Pose place = T_world_last_ * pose_after(twist_, after_s);
+      const Fit stayed = fit(map_, place, coarsest);
+      if (!stayed.good ||
+          stayed.matched_fraction <= std::max(kNearlyAll, found.good ? found.matched_fraction : 0))
+        continue;
       found = stayed;
-      expected = T_world_last_;
+      expected = place;
     }
   }
   // Without a prediction the last velocity compensated the sweep. The fit gives a better one: refine.
-  const int refinements = prediction.covered || since_s <= 0 ? 0 : first_is_bent_ ? 1 : kRefinements;
+  const int refinements = prediction.covered || gap_ || since_s <= 0 ? 0 : first_is_bent_ ? 1 : kRefinements;
   Twist assumed = prediction.twist;
   for (int i = 0; i < refinements && found.good; ++i) {
     const Twist twist = twist_between(T_world_last_, found.T_world_body, since_s);
@@ -206,7 +210,8 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
 
 void Loam::accept(const LoamPose& pose, const Cloud& cloud) {
   const double dt_s = seconds(pose.stamp - *last_valid_);
-  twist_ = dt_s > 0 && dt_s < kHeld ? twist_between(T_world_last_, pose.T_world_body, dt_s) : Twist{};
+  twist_ =
+      !gap_ && dt_s > 0 && dt_s < kHeld ? twist_between(T_world_last_, pose.T_world_body, dt_s) : Twist{};
   last_valid_ = pose.stamp;
   gap_ = false;
   T_world_last_ = pose.T_world_body;

@@ -57,7 +57,7 @@ class Loam {
   /// equals the prediction and leaves the local map unchanged. The first sweep is placed at its prediction.
   LoamPose process(const Sweep& sweep, const StateHistory& predicted, LoamEffort effort = LoamEffort::full);
 
-  /// The time up to the next sweep is not known, nor what was flown in it.
+  /// What was flown up to the next sweep is not known, nor how long it took.
   void note_gap() { gap_ = true; }
 
   const LocalMap& map() const { return map_; }

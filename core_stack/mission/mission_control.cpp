@@ -403,10 +403,7 @@ void MissionControl::on_authority(TimeNs, Authority who, const std::string& reas
     let_go(reason);
 }
 
-void MissionControl::on_gap() {
-  onboard_.flight.lose_track();
-  sensors_.note_gap();
-}
+void MissionControl::on_gap() { onboard_.flight.lose_track(); }
 
 /// Another steers. The vehicle still localizes and maps, and is ready to hover wherever it is.
 void MissionControl::let_go(const std::string& reason) {
@@ -443,6 +440,8 @@ void MissionControl::take_over() {
     flown_path_.begin(here);
     return_home_.set_home(here);
   }
+  if (!sensors_.located_in_first_map())
+    return land_here("the place where the core steers again is not known");
   // In the middle of its landing it may be too near to the ground to fly anywhere first.
   if (resumes_ == Phase::land && lands_at_home()) return enter(Phase::land, "the core steers again");
   if (resumes_ == Phase::home || resumes_ == Phase::land) return return_home_.begin("the core steers again");
@@ -452,7 +451,8 @@ void MissionControl::take_over() {
 
 bool MissionControl::lands_at_home() const {
   constexpr double kBeside_m = 0.5;
-  return (onboard_.flight.state().position - return_home_.hover()).head<2>().norm() < kBeside_m;
+  const Vec3 from_hover = onboard_.flight.state().position - return_home_.hover();
+  return from_hover.head<2>().norm() < kBeside_m && from_hover.z() < kBeside_m;
 }
 
 MapQuestion MissionControl::map_question() const {

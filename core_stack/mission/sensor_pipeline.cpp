@@ -30,9 +30,13 @@ SensorPipeline::SensorPipeline(Onboard& onboard, Wiring wiring)
 void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
   scan = stamped_right(std::move(scan));
   if (!scan) return;
-  if (!loam_) return map_scan(scan);
-  const TimeNs began = scan->stamp - scan->model->period;
-  if (began < onboard_.flight.estimator().track_lost_at()) return;
+  const Estimator& estimator = onboard_.flight.estimator();
+  if (scan->stamp - scan->model->period < estimator.track_lost_at()) return;
+  if (!loam_) {
+    if (!estimator.guesses()) map_scan(scan);  // else it would draw rock where there is none
+    return;
+  }
+  note_gap();
   if (onboard_.executive.under_way("localization") > 1)
     return;  // in real time, when localization falls behind: late scans are useless
   if (sweeps_++ % 2 == 1 && onboard_.load.sheds(Relief::half_the_sweeps)) return;
@@ -57,8 +61,11 @@ void SensorPipeline::on_lidar(std::shared_ptr<const LidarScan> scan) {
       });
 }
 
+/// Tells LOAM if since the last sweep nobody measured for a while what was flown.
 void SensorPipeline::note_gap() {
-  if (loam_) loam_->job("gap", kLocalizationBudget, [](Loam& loam) { loam.note_gap(); });
+  const TimeNs lost_at = onboard_.flight.estimator().track_lost_at();
+  if (std::exchange(track_lost_at_, lost_at) != lost_at)
+    loam_->job("gap", kLocalizationBudget, [](Loam& loam) { loam.note_gap(); });
 }
 
 /// The scan with a stamp that can be right; null if there is none.
@@ -123,6 +130,7 @@ void SensorPipeline::map_scan(const std::shared_ptr<const LidarScan>& scan) {
 
 void SensorPipeline::on_depth(const std::shared_ptr<const DepthImage>& image) {
   if (images_[image->model.get()]++ % 2 == 1 && onboard_.load.sheds(Relief::half_the_images)) return;
+  if (onboard_.flight.estimator().guesses()) return;
   integrate(image->stamp, [image, history = onboard_.flight.estimator().history(),
                            self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
     return to_rays(*image, history, self_m);

@@ -2,6 +2,7 @@
 // into the map. Images are integrated at their estimated poses.
 #pragma once
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -54,8 +55,6 @@ class SensorPipeline {
   void on_rgb(const std::shared_ptr<const RgbFrame>& frame);
   /// Used only if no LiDAR locates the vehicle.
   void on_pose(const PoseSample& s);
-  /// What the vehicle measured for a while never came.
-  void note_gap();
   /// Stops mapping: the flight ends without the map.
   void close() { closed_ = true; }
 
@@ -72,6 +71,7 @@ class SensorPipeline {
   bool located_in_first_map() const { return in_first_map_; }
 
  private:
+  void note_gap();
   std::shared_ptr<const LidarScan> stamped_right(std::shared_ptr<const LidarScan> scan);
   void note_localization(const LoamPose& pose, bool accepted);
   void keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file);
@@ -82,6 +82,7 @@ class SensorPipeline {
   Wiring wiring_;
   std::optional<LaneBound<Loam>> loam_;  // on vehicles that a LiDAR locates
   ScanClock lidar_clock_;
+  TimeNs track_lost_at_ = std::numeric_limits<TimeNs>::min();  // as LOAM was told
   bool in_first_map_ = true;
   bool closed_ = false;
   double explored_m3_ = 0;

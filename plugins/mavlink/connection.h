@@ -10,6 +10,10 @@ namespace karst::mavlink {
 
 constexpr std::uint8_t kAutopilotComponent = 1, kOnboardComputer = 191;
 
+inline Address autopilot_of(std::int64_t system) {
+  return {static_cast<std::uint8_t>(system), kAutopilotComponent};
+}
+
 /// Of one kind of message.
 struct Traffic {
   std::uint64_t messages = 0, bytes = 0;

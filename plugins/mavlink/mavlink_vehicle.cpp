@@ -40,7 +40,7 @@ MavlinkVehicle::MavlinkVehicle(const MavlinkOptions& o, Parts parts)
     : options_(o),
       description_(std::move(parts.description)),
       connection_(std::move(parts.link), {static_cast<std::uint8_t>(o.system), kOnboardComputer},
-                  {static_cast<std::uint8_t>(o.system), kAutopilotComponent}),
+                  autopilot_of(o.system)),
       scans_(std::move(parts.scans)),
       climb_m_(parts.climb_m),
       run_dir_(std::move(parts.run_dir)),
@@ -83,7 +83,12 @@ bool MavlinkVehicle::due(TimeNs& last, double rate_hz) const {
 void MavlinkVehicle::step() {
   const TimeNs measured = executive_->measured_now();
   if (std::exchange(lost_time_, executive_->lost_time()) != executive_->lost_time()) {
-    clock_ = {};  // the executive's clock was set back
+    // The executive's clock was set back: what has come and waits is of the old one.
+    clock_ = {};
+    connection_.receive();
+    while (connection_.next()) continue;
+    arrived_.clear();
+    held_ = {};
     sink_->on_gap();
   }
   connection_.receive();
@@ -235,9 +240,10 @@ void MavlinkVehicle::command(const core::Command& c) {
 /// ArduPilot follows positions in the air only, and takes off by a command.
 void MavlinkVehicle::lift_off(const core::Command& c) {
   constexpr double kAbove_m = 0.1;  // the command, or what the autopilot made of it, may have been lost
-  if (options_.firmware != Firmware::ardupilot || options_.control != Control::position ||
-      !telemetry_.standing() || c.reference.position.z() < c.state.position.z() + kAbove_m ||
-      commands_.waits_for(Cmd::nav_takeoff) || !due(take_off_at_, kTakeOffAgain_hz))
+  if (options_.firmware != Firmware::ardupilot || options_.control != Control::position || !c.rates.armed ||
+      !c.state_is_known || !telemetry_.standing() ||
+      c.reference.position.z() < c.state.position.z() + kAbove_m || commands_.waits_for(Cmd::nav_takeoff) ||
+      !due(take_off_at_, kTakeOffAgain_hz))
     return;
   add_command(Cmd::nav_takeoff, {0, 0, 0, 0, 0, 0, static_cast<float>(climb_m_)});
 }

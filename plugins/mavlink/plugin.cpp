@@ -43,8 +43,9 @@ class MavlinkPlugin final : public core::VehiclePlugin {
     parts.description.max_thrust_n = body_.max_thrust_n;
     parts.description.max_body_rate_radps = body_.max_body_rate_radps;
     parts.description.T_world_start = start_of(setup.start);
-    parts.link = core::opened_by_key("vehicle mavlink", "mavlink.link",
-                                     [this] { return mavlink::open_link(options_.link); });
+    parts.link = core::opened_by_key("vehicle mavlink", "mavlink.link", [this] {
+      return mavlink::open_link(options_.link, mavlink::autopilot_of(options_.system));
+    });
     parts.scans =
         std::make_unique<mavlink::LidarScans>(lidar::open_lidar(lidar_, "vehicle mavlink", "mavlink.lidar"));
     parts.climb_m = setup.climb_m;

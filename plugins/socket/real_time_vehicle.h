@@ -17,7 +17,7 @@
 
 namespace karst::socket {
 
-/// What is concluded from silence. By then the vehicle comes down by itself, if it hears no commands either.
+/// What is concluded from silence. By then the vehicle steers itself, if it hears no commands either.
 struct SilenceLimits {
   core::TimeNs autopilot_steers = core::kCommandTimeout;
   core::TimeNs vehicle_is_lost = 10 * core::kSecond;

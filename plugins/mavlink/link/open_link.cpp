@@ -22,14 +22,15 @@ unsigned number(const std::string& address, const std::string& text, unsigned ma
 
 }  // namespace
 
-std::unique_ptr<ByteLink> open_link(const std::string& address) {
+std::unique_ptr<ByteLink> open_link(const std::string& address, Address autopilot) {
   const auto first = address.find(':'), last = address.rfind(':');
   if (first == std::string::npos) throw core::InputError(address, "", kExpected);
   const std::string kind = address.substr(0, first), end = address.substr(last + 1);
   const std::string middle = last > first ? address.substr(first + 1, last - first - 1) : "";
   if (kind == "udp") {
     const auto port = static_cast<std::uint16_t>(number(address, end, 65535));
-    return std::make_unique<UdpLink>(middle.empty() ? UdpLink::wait_at(port) : UdpLink::to(middle, port));
+    return std::make_unique<UdpLink>(middle.empty() ? UdpLink::wait_at(port, autopilot)
+                                                    : UdpLink::to(middle, port));
   }
   if (kind == "serial" && !middle.empty())
     return std::make_unique<SerialLink>(middle, number(address, end, 10'000'000));

@@ -66,7 +66,10 @@ void SerialLink::send(std::span<const std::uint8_t> bytes) {
 }
 
 void SerialLink::receive(std::vector<std::uint8_t>& into) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!line_ && now < try_at_) return;
   if (!line_) try {
+      try_at_ = now + std::chrono::milliseconds(500);  // it takes time while the device is half back
       line_.emplace(open_line(device_, baud_));
     } catch (const core::InputError&) {
       return;  // not back yet

@@ -1,5 +1,6 @@
 // MAVLink by a serial line: eight bits, no parity, one stop bit, no flow control.
 #pragma once
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -21,6 +22,7 @@ class SerialLink final : public ByteLink {
   std::string device_;
   unsigned baud_;
   std::optional<FileDescriptor> line_;  // nothing while it is unplugged
+  std::chrono::steady_clock::time_point try_at_;
 };
 
 }  // namespace karst::mavlink

@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "core_stack/common/error.h"
-#include "plugins/mavlink/wire/frame.h"
 
 namespace karst::mavlink {
 namespace {
@@ -22,20 +21,22 @@ FileDescriptor open_socket(const std::string& address) {
 /// A peer that has been silent for so long is gone: its program was started anew at another port.
 constexpr std::chrono::seconds kGone{3};
 
-bool holds_frame(std::span<const std::uint8_t> datagram) {
+bool is_of(const Address& peer, std::span<const std::uint8_t> datagram) {
   FrameParser parser;
   parser.add(datagram);
-  return parser.next().has_value();
+  while (const auto frame = parser.next())
+    if (frame->from == peer) return true;
+  return false;
 }
 
 const sockaddr* generic(const sockaddr_in& a) { return reinterpret_cast<const sockaddr*>(&a); }
 
 }  // namespace
 
-UdpLink::UdpLink(FileDescriptor socket, std::optional<sockaddr_in> peer)
-    : socket_(std::move(socket)), waits_(!peer), peer_(peer) {}
+UdpLink::UdpLink(FileDescriptor socket, std::optional<Address> expected, std::optional<sockaddr_in> peer)
+    : socket_(std::move(socket)), expected_(expected), peer_(peer) {}
 
-UdpLink UdpLink::wait_at(std::uint16_t port) {
+UdpLink UdpLink::wait_at(std::uint16_t port, Address expected) {
   const std::string address = "udp:" + std::to_string(port);
   FileDescriptor socket = open_socket(address);
   sockaddr_in here{};
@@ -44,7 +45,7 @@ UdpLink UdpLink::wait_at(std::uint16_t port) {
   here.sin_addr.s_addr = htonl(INADDR_ANY);
   if (::bind(socket.get(), generic(here), sizeof here) != 0)
     throw core::InputError(address, "", std::strerror(errno));
-  return {std::move(socket), std::nullopt};
+  return {std::move(socket), expected, std::nullopt};
 }
 
 UdpLink UdpLink::to(const std::string& host, std::uint16_t port) {
@@ -54,14 +55,15 @@ UdpLink UdpLink::to(const std::string& host, std::uint16_t port) {
   there.sin_port = htons(port);
   if (::inet_pton(AF_INET, host.c_str(), &there.sin_addr) != 1)
     throw core::InputError(address, "", "expected an IPv4 address such as 192.168.4.1");
-  return {open_socket(address), there};
+  return {open_socket(address), std::nullopt, there};
 }
 
 void UdpLink::send(std::span<const std::uint8_t> bytes) {
   if (peer_) ::sendto(socket_.get(), bytes.data(), bytes.size(), 0, generic(*peer_), sizeof *peer_);
 }
 
-/// A datagram from elsewhere is dropped: another program must not steer, nor take over the link.
+/// A datagram from elsewhere is dropped: another program must not steer, nor take over the link. Only the
+/// computer that was the peer may go on from another port.
 void UdpLink::receive(std::vector<std::uint8_t>& into) {
   std::array<std::uint8_t, 65536> datagram;
   constexpr int kMost = 256;  // in one step: a flood must not hold up the loop
@@ -73,9 +75,10 @@ void UdpLink::receive(std::vector<std::uint8_t>& into) {
     if (n < 0 && errno == ECONNREFUSED) continue;  // nobody is there yet
     if (n < 0) return;
     const auto now = Clock::now();
-    const bool may_choose = !peer_ || (waits_ && now - heard_at_ > kGone);
+    const bool may_choose =
+        expected_ && (!peer_ || (from.sin_addr.s_addr == peer_->sin_addr.s_addr && now - heard_at_ > kGone));
     const std::span<const std::uint8_t> bytes(datagram.data(), static_cast<std::size_t>(n));
-    if (may_choose && holds_frame(bytes)) peer_ = from;
+    if (may_choose && is_of(*expected_, bytes)) peer_ = from;
     if (!peer_ || from.sin_addr.s_addr != peer_->sin_addr.s_addr || from.sin_port != peer_->sin_port)
       continue;
     heard_at_ = now;

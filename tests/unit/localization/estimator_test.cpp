@@ -283,6 +283,48 @@ TEST(Estimator, SamplesThatComeTooLateDoNotEndAGuess) {
   EXPECT_EQ(e.track_lost_at(), t);
 }
 
+class AfterAGuess : public testing::Test {
+ protected:
+  void measure(TimeNs until) {
+    for (; t < until; t += kImuPeriod) e.on_imu({t, kHover, Vec3::Zero()});
+  }
+  void guess(TimeNs until) {
+    for (; t < until; t += kImuPeriod)
+      e.bridge({t, kHover, Vec3::Zero()}, Estimator::Expected::another_steers);
+  }
+  bool locate() { return e.on_lidar_pose({t - kImuPeriod, {}, 1e-5 * Matrix6::Identity()}); }
+
+  const Vec3 kHover{0, 0, 9.81};
+  Estimator e{{}, {}};
+  TimeNs t = 0;
+};
+
+TEST_F(AfterAGuess, SamplesThatComeLateButNotAllLeaveItAGuess) {
+  measure(kSecond);
+  locate();
+  const TimeNs silent_from = t;
+  guess(silent_from + 400 * kMillisecond);
+  t = silent_from + 200 * kMillisecond;  // those before are lost
+  measure(silent_from + 500 * kMillisecond);
+  EXPECT_TRUE(e.guesses());
+  locate();
+  EXPECT_TRUE(e.guesses());
+  measure(t + 100 * kMillisecond);
+  locate();
+  EXPECT_FALSE(e.guesses());
+}
+
+TEST_F(AfterAGuess, AShortSilenceDoesNotEndTheWaitForPoses) {
+  measure(kSecond);
+  locate();
+  e.lose_track();
+  const TimeNs silent_from = t;
+  guess(silent_from + 30 * kMillisecond);
+  t = silent_from;
+  measure(silent_from + 60 * kMillisecond);  // all of it comes late
+  EXPECT_TRUE(e.guesses());
+}
+
 TEST(Estimator, InputsThatAreNotFiniteAreIgnoredAndDegradeHealth) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Estimator e({}, {}), clean({}, {});

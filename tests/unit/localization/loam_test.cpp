@@ -317,6 +317,7 @@ TEST(Loam, AfterAGapThatWasNotFlownItIsFoundWhereItStopped) {
   Loam loam({}, lap(kPeriod));
   fly(loam, furnished_room(), lap, 1, 30);
   const Motion stopped = standing_at(lap(30 * kPeriod));
+  loam.note_gap();
   const Pose flown_on{{2.1, -0.6, 0.1}, exp_so3({0.1, 0.05, 0.8})};
   const Flown after = fly(loam, furnished_room(), stopped, 46, 46, flown_on);
   ASSERT_TRUE(after.poses.front().valid) << after.poses.front().problem;

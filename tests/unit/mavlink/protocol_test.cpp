@@ -263,7 +263,7 @@ TEST(HeldMessages, WaitForTheImuButNotForEver) {
 
 std::string error_of(const std::string& address) {
   try {
-    open_link(address);
+    open_link(address, {1, kAutopilotComponent});
   } catch (const core::InputError& e) {
     return e.what();
   }
@@ -280,13 +280,14 @@ TEST(Link, ABadAddressIsAnErrorThatNamesIt) {
   EXPECT_NE(error_of("serial:/dev/null:12345").find("57600"), std::string::npos) << "the rates there are";
 }
 
-TEST(Link, UdpKeepsToThePeerThatSpokeMavlinkFirst) {
-  UdpLink waits = UdpLink::wait_at(0);
+TEST(Link, UdpKeepsToTheAutopilotThatSpokeFirst) {
+  UdpLink waits = UdpLink::wait_at(0, {1, 1});
   UdpLink peer = UdpLink::to("127.0.0.1", waits.port()), stranger = UdpLink::to("127.0.0.1", waits.port());
   const auto bytes = to_wire(frame_of(Heartbeat{}, {1, 1}));
   std::vector<std::uint8_t> got;
   waits.send(bytes);  // to nobody yet
   stranger.send(std::vector<std::uint8_t>(300, 0xfd));
+  stranger.send(to_wire(frame_of(Heartbeat{}, {255, 190})));  // a ground station
   peer.send(bytes);
   waits.receive(got);
   EXPECT_EQ(got, bytes);
@@ -300,7 +301,7 @@ TEST(Link, UdpKeepsToThePeerThatSpokeMavlinkFirst) {
 }
 
 TEST(Link, UdpTakesAPeerAtAnotherPortOnceTheFirstWasSilent) {
-  UdpLink waits = UdpLink::wait_at(0);
+  UdpLink waits = UdpLink::wait_at(0, {1, 1});
   const auto bytes = to_wire(frame_of(Heartbeat{}, {1, 1}));
   std::vector<std::uint8_t> got;
   {
