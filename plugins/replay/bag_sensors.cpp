@@ -17,14 +17,15 @@ using core::InputError;
 using core::TimeNs;
 namespace fs = std::filesystem;
 
-// IMU samples usually come before the scan that they lie in. A topic that ends early must not queue the other one whole.
+// IMU samples usually come before the scan that they lie in. A topic that ends early must not queue the other
+// one whole.
 constexpr std::size_t kMaxScansAhead = 10, kMaxSamplesAhead = 1'000'000;
 constexpr TimeNs kMaxStampJump = 10 * core::kSecond;
 constexpr int kJumpsAccepted = 5;
 
 std::string place_of_message(const Connection& c, const BagMessage& m) {
-  return "topic " + c.topic + ", byte " + std::to_string(m.chunk_byte) + ", message at " + std::to_string(m.byte) +
-         " of it";
+  return "topic " + c.topic + ", byte " + std::to_string(m.chunk_byte) + ", message at " +
+         std::to_string(m.byte) + " of it";
 }
 
 bool is_pose_type(std::string_view type) {
@@ -76,7 +77,8 @@ BagSensors::BagSensors(BagRecording recording)
   bag_->select(std::move(wanted));
   ReadNotes notes;
   auto sweep = make_sweep(notes);
-  if (!sweep) throw InputError(recording_.path, "topic " + recording_.info.lidar_topic, "has no scan that can be read");
+  if (!sweep)
+    throw InputError(recording_.path, "topic " + recording_.info.lidar_topic, "has no scan that can be read");
   // The end of the sweep lies at least half a sweep after its stamp, or at it.
   begin_ = std::min(notes.stamp, sweep->stamp) - core::from_seconds(recording_.info.period_s);
   first_.emplace(std::move(*sweep), notes);
@@ -100,14 +102,16 @@ void BagSensors::take_cloud(const BagMessage& m) {
   const Connection& c = bag_->connections()[m.connection];
   CloudMessage cloud = cloud_of(c.type, decoder_.decode(m.connection, m.bytes), recording_.info.fields);
   if (!cloud_stamps_.plausible(cloud.stamp, m.time))
-    throw MalformedError("its stamp " + decimal_seconds(cloud.stamp) + " s jumps against the time of recording", 0);
+    throw MalformedError(
+        "its stamp " + decimal_seconds(cloud.stamp) + " s jumps against the time of recording", 0);
   clouds_.push_back({std::move(cloud), place_of_message(c, m)});
 }
 
 void BagSensors::take_imu(const BagMessage& m) {
   core::ImuSample sample = imu_of(decoder_.decode(m.connection, m.bytes));
   if (!imu_stamps_.plausible(sample.stamp, m.time))
-    throw MalformedError("its stamp " + decimal_seconds(sample.stamp) + " s jumps against the time of recording", 0);
+    throw MalformedError(
+        "its stamp " + decimal_seconds(sample.stamp) + " s jumps against the time of recording", 0);
   if (last_imu_ && sample.stamp < *last_imu_)
     throw MalformedError("its stamp " + decimal_seconds(sample.stamp) + " s goes back in time", 0);
   last_imu_ = sample.stamp;
@@ -131,8 +135,8 @@ std::optional<core::Sweep> BagSensors::make_sweep(ReadNotes& notes) {
     notes = {next.cloud.stamp, 0, false};
     core::Sweep sweep;
     try {
-      sweep = sweep_of(std::move(next.cloud.scan), next.cloud.stamp, {recording_.path, next.place}, recording_.info,
-                       recording_.layout, &notes);
+      sweep = sweep_of(std::move(next.cloud.scan), next.cloud.stamp, {recording_.path, next.place},
+                       recording_.info, recording_.layout, &notes);
     } catch (const InputError& e) {
       if (!last_sweep_) throw;  // the recording file is wrong rather than one scan
       faults_.add(next.place, std::string(e.what()).substr(recording_.path.size() + next.place.size() + 4));
@@ -167,7 +171,8 @@ std::optional<core::ImuSample> BagSensors::next_imu() {
 SensorStream::Damage BagSensors::damage() const {
   Damage damage;
   for (const FaultLog* log : {&bag_->faults(), &faults_}) {
-    for (const Fault& f : log->first()) damage.first.push_back(recording_.path + ": " + f.place + ": " + f.reason);
+    for (const Fault& f : log->first())
+      damage.first.push_back(recording_.path + ": " + f.place + ": " + f.reason);
     damage.count += log->count();
   }
   return damage;
@@ -179,7 +184,8 @@ std::size_t write_truth(const std::string& path, const std::string& topic, const
   std::vector<bool> wanted;
   for (const Connection& c : bag->connections()) wanted.push_back(c.topic == topic && is_pose_type(c.type));
   if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
-    throw InputError(path, "topic " + topic, "has no nav_msgs/Odometry or geometry_msgs/PoseStamped, which bag.truth asks for");
+    throw InputError(path, "topic " + topic,
+                     "has no nav_msgs/Odometry or geometry_msgs/PoseStamped, which bag.truth asks for");
   bag->select(std::move(wanted));
   std::ofstream out(tum_file, std::ios::trunc);
   std::size_t poses = 0;

@@ -14,8 +14,9 @@ struct BagRecording {
   std::vector<std::string> assumptions;  // sentences
 };
 
-/// `info_file`, or FILE.info beside FILE.bag, or recording.info in a folder of bags, if that is "" and there is one;
-/// keys that it lacks are guessed from the bag's beginning. Throws InputError where that is ambiguous: the reasons tell which keys decide.
+/// `info_file`, or FILE.info beside FILE.bag, or recording.info in a folder of bags, if that is "" and there
+/// is one; keys that it lacks are guessed from the bag's beginning. Throws InputError where that is
+/// ambiguous: the reasons tell which keys decide.
 BagRecording open_bag_recording(const std::string& path, const std::string& info_file);
 
 /// Reads both topics in one pass. A message that is damaged is left out and logged.

@@ -4,8 +4,8 @@
 
 #include "core_stack/common/error.h"
 #include "plugins/replay/scan_files/decimal_time.h"
-#include "plugins/replay/sweep_of_scan.h"
 #include "plugins/replay/scan_files/text_numbers.h"
+#include "plugins/replay/sweep_of_scan.h"
 
 namespace karst::replay {
 namespace {
@@ -172,7 +172,8 @@ std::optional<ImuFile> open_imu(const Recording& r) {
                  r.layout.R_body_imu);
 }
 
-FolderSensors::FolderSensors(Recording recording) : recording_(std::move(recording)), imu_(open_imu(recording_)) {}
+FolderSensors::FolderSensors(Recording recording)
+    : recording_(std::move(recording)), imu_(open_imu(recording_)) {}
 
 core::TimeNs FolderSensors::begin() const {
   return recording_.files.front().stamp - core::from_seconds(recording_.info.period_s);

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core_stack/localization/sweep.h"
-#include "plugins/replay/scan_files/imu_file.h"
 #include "plugins/replay/recording_info.h"
+#include "plugins/replay/scan_files/imu_file.h"
 #include "plugins/replay/sensor_stream.h"
 
 namespace karst::replay {

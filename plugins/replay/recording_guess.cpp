@@ -15,9 +15,8 @@ namespace {
 using core::TimeNs;
 
 bool has_field(const CloudFacts& c, std::string_view name, std::optional<ValueType> type = std::nullopt) {
-  return std::any_of(c.fields.begin(), c.fields.end(), [&](const CloudField& f) {
-    return f.name == name && (!type || f.type == *type);
-  });
+  return std::any_of(c.fields.begin(), c.fields.end(),
+                     [&](const CloudField& f) { return f.name == name && (!type || f.type == *type); });
 }
 
 const CloudField* field_with(const CloudFacts& c, Role role) {
@@ -133,7 +132,8 @@ class Guesser {
     for (std::size_t i = 1; i < lidar.samples.size(); ++i)
       steps.push_back(lidar.samples[i].stamp - lidar.samples[i - 1].stamp);
     if (steps.empty()) return;
-    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
+    std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
+                     steps.end());
     const double median_s = core::seconds(steps[steps.size() / 2]);
     if (median_s < 0.001 || median_s > 10) return;
     guess.info.period_s = std::round(median_s * 1000) / 1000;
@@ -147,7 +147,8 @@ class Guesser {
     for (const CloudSample& s : lidar.samples)
       if (s.last_time - s.first_time > widest->last_time - widest->first_time) widest = &s;
     const double spread = widest->last_time - widest->first_time;
-    if (spread == 0) return ground("The times of all points are equal: motion during a scan is not compensated.");
+    if (spread == 0)
+      return ground("The times of all points are equal: motion during a scan is not compensated.");
     // A sweep lasts between 2 ms and 1 s: one unit fits at most.
     std::string unit;
     for (const char* u : {"s", "ms", "us", "ns"}) {
@@ -156,12 +157,14 @@ class Guesser {
     }
     if (by_hand) unit = guess.info.time_unit;
     if (unit.empty())
-      return doubt("The times of a scan's points (" + field->name + ") spread over " + std::to_string(spread) +
+      return doubt("The times of a scan's points (" + field->name + ") spread over " +
+                   std::to_string(spread) +
                    ", which is a sweep in no unit: say what they are with time.unit and time.of.");
     guess.info.time_unit = unit;
     const double unit_s = static_cast<double>(nanoseconds_of(unit)) * 1e-9;
     std::array<char, 200> text;
-    std::snprintf(text.data(), text.size(), "The times of the points (%s) are in %s: a scan's spread over %.1f ms.",
+    std::snprintf(text.data(), text.size(),
+                  "The times of the points (%s) are in %s: a scan's spread over %.1f ms.",
                   field->name.c_str(), unit.c_str(), 1e3 * spread * unit_s);
     ground(text.data());
     guess_origin(lidar, unit_s);
@@ -169,7 +172,8 @@ class Guesser {
 
   void guess_origin(const CloudFacts& lidar, double unit_s) {
     const CloudSample &first = lidar.samples.front(), &last = lidar.samples.back();
-    const double stamps_s = core::seconds(last.stamp - first.stamp), times_s = (last.last_time - first.last_time) * unit_s,
+    const double stamps_s = core::seconds(last.stamp - first.stamp),
+                 times_s = (last.last_time - first.last_time) * unit_s,
                  beyond_s = std::max(std::abs(first.first_time), std::abs(first.last_time)) * unit_s;
     // Times from the stamp start anew in each scan; absolute ones go on as the stamps do.
     const bool go_on = stamps_s > 0.01 && std::abs(times_s - stamps_s) < 0.5 * stamps_s;
@@ -179,8 +183,9 @@ class Guesser {
       return;
     }
     if (beyond_s > 1.5)
-      return doubt("The points' times neither count from the stamp nor go on as the stamps do: say what they count "
-                   "from with time.of.");
+      return doubt(
+          "The points' times neither count from the stamp nor go on as the stamps do: say what they count "
+          "from with time.of.");
     guess.info.time_of = TimeOrigin::start;
     guess.info.stamp_of = StampMoment::start;
     ground(first.last_time > -first.first_time
@@ -193,13 +198,15 @@ class Guesser {
     if (kind.name == "Livox" || !field_with(lidar, Role::ring)) {
       guess.info.rings_by = guess.info.rings > 0 ? RingSource::automatic : RingSource::none;
       if (guess.info.rings_by == RingSource::none)
-        ground(kind.name == "Livox" ? "A Livox has no rings." : "The points have no rings: they are used without.");
+        ground(kind.name == "Livox" ? "A Livox has no rings."
+                                    : "The points have no rings: they are used without.");
       return;
     }
     guess.info.rings_by = RingSource::field;
     int rings = 0;
     for (const CloudSample& s : lidar.samples) rings = std::max(rings, s.rings);
-    ground("The field " + field_with(lidar, Role::ring)->name + " has the rings, " + std::to_string(rings) + " of them.");
+    ground("The field " + field_with(lidar, Role::ring)->name + " has the rings, " + std::to_string(rings) +
+           " of them.");
   }
 
   const ImuFacts* choose_imu(const CloudFacts& lidar) {
@@ -213,23 +220,28 @@ class Guesser {
       return nullptr;
     }
     if (candidates.size() == 1) return candidates.front();
-    std::erase_if(candidates, [&](const ImuFacts* i) { return namespace_of(i->topic) != namespace_of(lidar.topic); });
+    std::erase_if(candidates,
+                  [&](const ImuFacts* i) { return namespace_of(i->topic) != namespace_of(lidar.topic); });
     if (candidates.size() == 1) return candidates.front();
-    ground("Several topics have an IMU, and none is the LiDAR's by its name: none is used; choose with bag.imu.");
+    ground(
+        "Several topics have an IMU, and none is the LiDAR's by its name: none is used; choose with "
+        "bag.imu.");
     return nullptr;
   }
 
   void guess_force_unit(const ImuFacts& imu) {
     if (imu.mean_force > 0.5 && imu.mean_force < 2) {
       guess.info.imu_force_unit = ForceUnit::g;
-      ground("The specific force of " + imu.topic + " is in g: its mean is " + std::to_string(imu.mean_force) + ".");
+      ground("The specific force of " + imu.topic + " is in g: its mean is " +
+             std::to_string(imu.mean_force) + ".");
     }
   }
 
   /// The body's frame is base_link where transforms lead to it, else the IMU's, else the LiDAR's.
   void guess_mounting(const CloudFacts& lidar, const ImuFacts* imu, bool imu_named) {
     const bool by_hand = guess.info.lidar_position != "0 0 0" || guess.info.lidar_rotation != "0 0 0" ||
-                         guess.info.imu_rotation != "0 0 0" || (imu && imu_named && survey_.transforms.empty());
+                         guess.info.imu_rotation != "0 0 0" ||
+                         (imu && imu_named && survey_.transforms.empty());
     if (by_hand) {
       if (imu) guess.info.imu_topic = imu->topic;
       return ground("The sensors are mounted as the recording file says.");
@@ -246,8 +258,8 @@ class Guesser {
       if (imu) guess.info.imu_topic = imu->topic;
       return ground(imu && imu->frame == lidar.frame && body == imu->frame
                         ? "LiDAR and IMU " + imu->topic + " have the same frame, " + body + "."
-                        : "/tf_static tells how the sensors are mounted on " + body + (imu ? ", IMU " + imu->topic : "") +
-                              ".");
+                        : "/tf_static tells how the sensors are mounted on " + body +
+                              (imu ? ", IMU " + imu->topic : "") + ".");
     }
     ground("The body's frame is the LiDAR's, " + lidar.frame + ".");
     if (imu)
@@ -287,7 +299,8 @@ std::string recording_info_text(const RecordingGuess& guess) {
     if (value == unset[i].second) continue;
     const auto dot = key.find('.');
     enter(dot == std::string::npos ? "" : key.substr(0, dot));
-    text += (section.empty() ? "" : "  ") + key.substr(dot == std::string::npos ? 0 : dot + 1) + " \"" + value + "\"\n";
+    text += (section.empty() ? "" : "  ") + key.substr(dot == std::string::npos ? 0 : dot + 1) + " \"" +
+            value + "\"\n";
   }
   enter("");
   return text;

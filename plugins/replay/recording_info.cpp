@@ -113,7 +113,8 @@ void describe(core::OptionTable& t, RecordingInfo& o) {
   t.under("bag", [&o](core::OptionTable& b) {
     b.add("lidar", o.lidar_topic, {}, "topic of the scans; auto: the only one that has scans");
     b.add("imu", o.imu_topic, {}, "topic of the IMU; auto: the LiDAR's; none: without");
-    b.add("truth", o.truth_topic, {}, "topic of poses from elsewhere, for karst evaluate only; none: without");
+    b.add("truth", o.truth_topic, {},
+          "topic of poses from elsewhere, for karst evaluate only; none: without");
   });
 }
 

@@ -37,8 +37,8 @@ constexpr auto names_of(TurnDirection) {
       {{none, "none"}, {clockwise, "clockwise"}, {counterclockwise, "counterclockwise"}});
 }
 
-/// How a point's ring is determined; automatic: by the field if there is one, else by elevation. none: the LiDAR
-/// has no rings, such as a Mid-360.
+/// How a point's ring is determined; automatic: by the field if there is one, else by elevation. none: the
+/// LiDAR has no rings, such as a Mid-360.
 enum class RingSource { automatic, field, elevation, order, none };
 constexpr auto names_of(RingSource) {
   using enum RingSource;
@@ -92,8 +92,8 @@ struct RecordingLayout {
   core::Quat R_body_imu = core::Quat::Identity();
 };
 
-/// Reads and checks the file; keys that it lacks stay as in `info`. Throws InputError naming file, key, the expected
-/// value and the nearest key.
+/// Reads and checks the file; keys that it lacks stay as in `info`. Throws InputError naming file, key, the
+/// expected value and the nearest key.
 RecordingInfo read_recording_info(const std::string& file, RecordingInfo info = {});
 RecordingLayout layout_of(const RecordingInfo& info, const std::string& file);
 

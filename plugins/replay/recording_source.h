@@ -15,8 +15,8 @@ struct RecordingSource {
   std::unique_ptr<SensorStream> sensors;
 };
 
-/// `info_file` as for open_recording and open_bag_recording. Reads the first scan, so that an error common to all of
-/// them is thrown now. Throws InputError.
+/// `info_file` as for open_recording and open_bag_recording. Reads the first scan, so that an error common to
+/// all of them is thrown now. Throws InputError.
 RecordingSource open_source(const std::string& path, const std::string& info_file);
 
 }  // namespace karst::replay

@@ -28,10 +28,11 @@ class SensorStream {
   /// Throws InputError if it cannot be read.
   virtual std::optional<core::Sweep> next_sweep(ReadNotes& notes) = 0;
   virtual bool has_imu() const = 0;
-  /// The next sample in the body frame, with the recording's own stamp; nullopt if there is none, or none yet.
+  /// The next sample in the body frame, with the recording's own stamp; nullopt if there is none, or none
+  /// yet.
   virtual std::optional<core::ImuSample> next_imu() = 0;
-  /// What was left out because it was damaged, each as "file: place: reason". `count` counts all, also those that
-  /// are not kept.
+  /// What was left out because it was damaged, each as "file: place: reason". `count` counts all, also those
+  /// that are not kept.
   struct Damage {
     std::vector<std::string> first;
     std::size_t count = 0;

@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/rings.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 
 namespace karst::replay {
 namespace {
@@ -27,16 +27,17 @@ void times_by_azimuth(const RecordingInfo& info, Scan& scan) {
 }
 
 /// Converts times to seconds relative to the end of the sweep (<= 0); returns the stamp of the end.
-TimeNs assign_times(const RecordingInfo& info, TimeNs stamp, const ScanPlace& place, bool by_azimuth, Scan& scan) {
+TimeNs assign_times(const RecordingInfo& info, TimeNs stamp, const ScanPlace& place, bool by_azimuth,
+                    Scan& scan) {
   const bool known = scan.has_time && !info.compensated && !scan.points.empty();
   if (!known) {
     for (ScanPoint& p : scan.points) p.time = 0;
     return stamp;
   }
-  const std::string unit = by_azimuth                   ? "s"
+  const std::string unit = by_azimuth                 ? "s"
                            : info.time_unit != "auto" ? info.time_unit
-                           : scan.time_is_whole         ? "ns"
-                                                        : "s";
+                           : scan.time_is_whole       ? "ns"
+                                                      : "s";
   const double unit_s = static_cast<double>(nanoseconds_of(unit)) * 1e-9;
   const auto [least, greatest] = std::minmax_element(
       scan.points.begin(), scan.points.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
@@ -50,7 +51,8 @@ TimeNs assign_times(const RecordingInfo& info, TimeNs stamp, const ScanPlace& pl
   if (of == TimeOrigin::absolute) {
     const double end_ns = last * unit_s * 1e9;
     if (std::abs(end_ns) >= 9.2e18)
-      throw InputError(place.file, place.place, "its points' times lie beyond the year 2262: time.unit is wrong");
+      throw InputError(place.file, place.place,
+                       "its points' times lie beyond the year 2262: time.unit is wrong");
     end = static_cast<TimeNs>(std::llround(end_ns));
   } else if (info.stamp_of == StampMoment::start) {
     end += core::from_seconds(of == TimeOrigin::start ? last * unit_s : length_s);
@@ -72,7 +74,11 @@ void order_points(bool has_rings, Scan& scan) {
   keys.reserve(scan.points.size());
   for (std::uint32_t i = 0; i < scan.points.size(); ++i) {
     const ScanPoint& p = scan.points[i];
-    keys.push_back({p.ring, by_time ? p.time : has_rings ? std::atan2(p.position.y(), p.position.x()) : 0, i});
+    keys.push_back({p.ring,
+                    by_time     ? p.time
+                    : has_rings ? std::atan2(p.position.y(), p.position.x())
+                                : 0,
+                    i});
   }
   std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
     return std::tie(a.ring, a.within, a.index) < std::tie(b.ring, b.within, b.index);
@@ -88,8 +94,7 @@ void order_points(bool has_rings, Scan& scan) {
 core::Sweep sweep_of(Scan scan, TimeNs stamp, const ScanPlace& place, const RecordingInfo& info,
                      const RecordingLayout& layout, ReadNotes* notes) {
   const std::size_t declared = scan.points.size() + scan.dropped;
-  const bool by_azimuth =
-      !scan.has_time && !info.compensated && info.time_direction != TurnDirection::none;
+  const bool by_azimuth = !scan.has_time && !info.compensated && info.time_direction != TurnDirection::none;
   if (by_azimuth) times_by_azimuth(info, scan);
   if (info.rings_by == RingSource::field && !scan.has_ring)
     throw InputError(place.file, place.place, "has no field with rings, which rings.by asks for");
@@ -100,8 +105,7 @@ core::Sweep sweep_of(Scan scan, TimeNs stamp, const ScanPlace& place, const Reco
     const double range = p.position.norm();
     return range < info.min_range_m || range > info.max_range_m || range == 0;
   });
-  if (info.rings_by == RingSource::elevation ||
-      (info.rings_by == RingSource::automatic && !scan.has_ring)) {
+  if (info.rings_by == RingSource::elevation || (info.rings_by == RingSource::automatic && !scan.has_ring)) {
     if (info.rings == 0)
       throw InputError(
           place.file, place.place,

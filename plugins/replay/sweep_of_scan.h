@@ -14,8 +14,9 @@ struct ScanPlace {
   std::string file, place;
 };
 
-/// Assigns rings, and times relative to the end of the sweep, which becomes the stamp; orders the points by ring,
-/// and by time within it (by azimuth where there is no time). Throws InputError where `info` does not fit.
+/// Assigns rings, and times relative to the end of the sweep, which becomes the stamp; orders the points by
+/// ring, and by time within it (by azimuth where there is no time). Throws InputError where `info` does not
+/// fit.
 core::Sweep sweep_of(Scan scan, core::TimeNs stamp, const ScanPlace& place, const RecordingInfo& info,
                      const RecordingLayout& layout, ReadNotes* notes);
 

@@ -7,8 +7,8 @@ namespace karst::replay {
 using core::TimeNs;
 using core::Vec3;
 
-ImuPrediction::ImuPrediction(SensorStream& sensors, const core::EstimatorOptions& options, TimeNs origin, bool level,
-                             double still_s)
+ImuPrediction::ImuPrediction(SensorStream& sensors, const core::EstimatorOptions& options, TimeNs origin,
+                             bool level, double still_s)
     : sensors_(sensors), origin_(origin) {
   // An IMU often runs before the first scan: samples older than `still_s` before it are not used.
   const TimeNs still = core::from_seconds(still_s);

@@ -60,8 +60,8 @@ std::shared_ptr<CLI::App> karst_command() {
   add_table_command(*app);
   add_explain_command(*app);
   add_explain_time_command(*app);
-  for (const char* name : {"preflight", "compare", "results", "recording", "replay", "evaluate", "draw", "map", "export",
-                           "select", "tune", "vehicle", "python", "completion"})
+  for (const char* name : {"preflight", "compare", "results", "recording", "replay", "evaluate", "draw",
+                           "map", "export", "select", "tune", "vehicle", "python", "completion"})
     add_missing(*app, name);
   for (const char* name : {"check", "replay"}) add_missing(policy, name);
   for (const char* name : {"describe", "from-cloud", "from-survey"}) add_missing(cave, name);

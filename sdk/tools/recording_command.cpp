@@ -46,7 +46,8 @@ nlohmann::ordered_json json_of(const replay::BagSurvey& survey, const replay::Re
   j["open"] = guess.doubts;
   j["recording_info"] = replay::recording_info_text(guess);
   j["faults"] = nlohmann::ordered_json::array();
-  for (const auto& f : survey.faults.first()) j["faults"].push_back({{"place", f.place}, {"reason", f.reason}});
+  for (const auto& f : survey.faults.first())
+    j["faults"].push_back({{"place", f.place}, {"reason", f.reason}});
   j["fault_count"] = survey.faults.count();
   return j;
 }
@@ -57,8 +58,8 @@ void print_survey(const replay::BagSurvey& survey, const replay::RecordingGuess&
             replay::decimal_seconds(survey.last).c_str(), core::seconds(survey.last - survey.first));
   print_out("; %-30s %-32s %9s %9s %9s %12s\n", "topic", "type", "messages", "Hz", "MB", "longest gap");
   for (const auto& t : survey.topics)
-    print_out("; %-30s %-32s %9zu %9.2f %9.2f %10.3f s\n", t.topic.c_str(), t.type.c_str(), t.messages, t.rate_hz(),
-              static_cast<double>(t.bytes) * 1e-6, core::seconds(t.longest_gap));
+    print_out("; %-30s %-32s %9zu %9.2f %9.2f %10.3f s\n", t.topic.c_str(), t.type.c_str(), t.messages,
+              t.rate_hz(), static_cast<double>(t.bytes) * 1e-6, core::seconds(t.longest_gap));
   print_out(";\n%s", replay::recording_info_text(guess).c_str());
 }
 
@@ -88,7 +89,8 @@ void add_recording_command(CLI::App& app) {
       "Say what a bag contains, and what karst replay would assume of it\n\n"
       "  karst recording info flight7.bag\n"
       "  karst recording info flight7.mcap --json\n\n"
-      "Topics with their types, rates and gaps; the kind of the LiDAR, with the evidence; and a recording file for "
+      "Topics with their types, rates and gaps; the kind of the LiDAR, with the evidence; and a recording "
+      "file for "
       "karst replay --info (" +
           core::doc_path("docs/replay.md") + ").\nExit code: 0 read, 1 damaged or an error.");
   info->add_option("file", args->file, "bag of ROS 1 (.bag) or ROS 2 (.mcap, .db3)")

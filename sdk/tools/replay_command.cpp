@@ -10,11 +10,11 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/printable.h"
+#include "plugins/replay/bag_sensors.h"
+#include "plugins/replay/recording_source.h"
 #include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/flight/finish_run.h"
 #include "sdk/flight/run_files.h"
-#include "plugins/replay/bag_sensors.h"
-#include "plugins/replay/recording_source.h"
 #include "sdk/replay/replay_run.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
@@ -40,9 +40,9 @@ class ReplayLine {
     if (quiet_ || (!terminal_ && scan % 100 != 0)) return;
     const core::Vec3& p = pose.T_world_body.position;
     std::fprintf(stderr, "%sscan %zu%s  at (%.1f, %.1f, %.1f)  %d features  %.0f m³ free  %s%s",
-                 terminal_ ? "\r\033[K" : "", scan, scans_ ? (" of " + std::to_string(*scans_)).c_str() : "", p.x(), p.y(), p.z(), pose.edges + pose.planes,
-                 map.free_volume_m3(), pose.valid ? "" : ("lost: " + core::printable(pose.problem)).c_str(),
-                 terminal_ ? "" : "\n");
+                 terminal_ ? "\r\033[K" : "", scan, scans_ ? (" of " + std::to_string(*scans_)).c_str() : "",
+                 p.x(), p.y(), p.z(), pose.edges + pose.planes, map.free_volume_m3(),
+                 pose.valid ? "" : ("lost: " + core::printable(pose.problem)).c_str(), terminal_ ? "" : "\n");
   }
   void end() const {
     if (!quiet_ && terminal_) std::fprintf(stderr, "\r\033[K");
@@ -139,7 +139,8 @@ int replay_scans(const ReplayArguments& args) {
   const replay::ReplayOptions options = options_of(args);
   const replay::RecordingSource recording = replay::open_source(args.scans, args.info);
   if (!args.quiet && !args.json)
-    for (const std::string& a : recording.assumptions) std::fprintf(stderr, "%s\n", core::printable(a).c_str());
+    for (const std::string& a : recording.assumptions)
+      std::fprintf(stderr, "%s\n", core::printable(a).c_str());
 
   const std::atomic<bool>& interrupted = watch_for_interrupt();
   const fs::path run_dir = flight::run_dir_of(args.out);
@@ -191,18 +192,23 @@ void add_replay_command(CLI::App& app) {
   auto args = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand(
       "replay",
-      "Localize and map from recorded scans (ROS bags, MCAP, PCD, PLY, bare .bin), with an IMU where there is one\n\n"
+      "Localize and map from recorded scans (ROS bags, MCAP, PCD, PLY, bare .bin), with an IMU where there "
+      "is one\n\n"
       "  karst replay scans/kitti00 --info kitti.info --out runs/kitti00\n"
       "  karst replay flight7 --out runs/flight7 --set map.resolution=\"0.3 m\"\n"
       "  karst replay flight8.mcap --out runs/flight8\n"
       "  karst replay --keys\n\n"
-      "SCANS is a bag (.bag, .mcap, .db3) or a folder. Of a bag, karst finds the sensors and says what it assumed; "
-      "FILE.info beside it, or --info, overrides that. In a folder, a small file recording.info in it, or --info, declares what the files do not say: "
+      "SCANS is a bag (.bag, .mcap, .db3) or a folder. Of a bag, karst finds the sensors and says what it "
+      "assumed; "
+      "FILE.info beside it, or --info, overrides that. In a folder, a small file recording.info in it, or "
+      "--info, declares what the files do not say: "
       "stamps, layout, units, frames, rings (" +
           core::doc_path("docs/replay.md") +
           ").\n"
           "Exit code: 0 replayed, 2 stopped by the operator or no scan could be placed, 1 an error.");
-  command->add_option("scans", args->scans, "folder of scans, or a bag")->type_name(kFile)->check(not_empty());
+  command->add_option("scans", args->scans, "folder of scans, or a bag")
+      ->type_name(kFile)
+      ->check(not_empty());
   command->add_option("--out,-o", args->out, "run directory")->type_name(kFolder)->check(not_empty());
   command
       ->add_option("--info", args->info, "what the files do not say; default: recording.info in the folder")

@@ -20,7 +20,8 @@ std::unique_ptr<Bag> open_bag(const std::string& path) {
   const std::string_view start(head.data(), head.size());
   if (start.starts_with("#ROSBAG V2.0")) return open_rosbag1(path);
   if (start.starts_with("#ROSBAG"))
-    throw core::InputError(path, "byte 0", "is a bag of another version than 2.0: convert it with rosbag fix");
+    throw core::InputError(path, "byte 0",
+                           "is a bag of another version than 2.0: convert it with rosbag fix");
   if (start.starts_with("\x89MCAP")) return open_mcap(path);
   if (start.starts_with("SQLite format 3")) return open_db3(path);
   throw core::InputError(path, "byte 0",

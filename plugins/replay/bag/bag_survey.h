@@ -12,7 +12,7 @@ struct TopicFacts {
   Encoding encoding = Encoding::unknown;
   std::size_t messages = 0;
   std::uint64_t bytes = 0;
-  core::TimeNs first = 0, last = 0;            // times of recording
+  core::TimeNs first = 0, last = 0;             // times of recording
   core::TimeNs longest_gap = 0, gap_after = 0;  // between two messages, and the time of the first of them
   double rate_hz() const {
     return messages > 1 && last > first ? static_cast<double>(messages - 1) / core::seconds(last - first) : 0;

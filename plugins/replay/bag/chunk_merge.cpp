@@ -7,7 +7,10 @@
 namespace karst::replay {
 
 ChunkMerge::ChunkMerge(std::vector<core::TimeNs> start, Load load, std::size_t max_open_bytes)
-    : start_(std::move(start)), order_(start_.size()), load_(std::move(load)), max_open_bytes_(max_open_bytes) {
+    : start_(std::move(start)),
+      order_(start_.size()),
+      load_(std::move(load)),
+      max_open_bytes_(max_open_bytes) {
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::stable_sort(order_.begin(), order_.end(), [&](auto a, auto b) { return start_[a] < start_[b]; });
 }

@@ -29,8 +29,8 @@ class ChunkMerge {
   };
   using Load = std::function<LoadedChunk(std::size_t chunk)>;
 
-  /// `start` is the time of each chunk's first message. At most `max_open_bytes` of chunks (and one chunk) are
-  /// in memory: if more of them overlap, the order is no longer that of time.
+  /// `start` is the time of each chunk's first message. At most `max_open_bytes` of chunks (and one chunk)
+  /// are in memory: if more of them overlap, the order is no longer that of time.
   ChunkMerge(std::vector<core::TimeNs> start, Load load, std::size_t max_open_bytes);
 
   std::optional<Item> next();

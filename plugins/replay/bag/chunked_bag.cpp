@@ -64,7 +64,8 @@ LoadedChunk ChunkedBag::load(std::size_t chunk, bool log) {
                        : decompress(place.compression, stored, place.bytes);
   if (problem.empty()) problem = d.problem;
   if (problem.empty() && place.crc != 0) {
-    const auto crc = crc32(0, reinterpret_cast<const Bytef*>(d.bytes.data()), static_cast<uInt>(d.bytes.size()));
+    const auto crc =
+        crc32(0, reinterpret_cast<const Bytef*>(d.bytes.data()), static_cast<uInt>(d.bytes.size()));
     if (crc != place.crc) {
       report("its check sum is wrong: none of its messages is used");
       take_descriptions(d.bytes);
@@ -96,9 +97,10 @@ void ChunkedBag::rebuild_index(bool all) {
     if (!all && chunks_[i].start) continue;
     const LoadedChunk loaded = load(i, false);
     if (!loaded.messages.empty())
-      chunks_[i].start = std::min_element(loaded.messages.begin(), loaded.messages.end(),
-                                          [](const auto& a, const auto& b) { return a.time < b.time; })
-                             ->time;
+      chunks_[i].start =
+          std::min_element(loaded.messages.begin(), loaded.messages.end(), [](const auto& a, const auto& b) {
+            return a.time < b.time;
+          })->time;
   }
 }
 

@@ -13,10 +13,10 @@ namespace karst::replay {
 struct ChunkPlace {
   std::uint64_t offset = 0, size = 0;  // of the stored bytes
   Compression compression = Compression::none;
-  std::uint64_t bytes = 0;         // decompressed, as announced
-  std::uint32_t crc = 0;           // of the decompressed bytes; 0: not known
+  std::uint64_t bytes = 0;            // decompressed, as announced
+  std::uint32_t crc = 0;              // of the decompressed bytes; 0: not known
   std::optional<core::TimeNs> start;  // of its first message; unknown in a bag without an index
-  std::string_view cut;            // why only its beginning can be read; "" for an intact one
+  std::string_view cut;               // why only its beginning can be read; "" for an intact one
 };
 
 class ChunkedBag : public Bag {
@@ -29,8 +29,8 @@ class ChunkedBag : public Bag {
   const FaultLog& faults() const override { return faults_; }
 
  protected:
-  /// Appends the messages among a chunk's records, and adds connections that are new. Throws MalformedError at
-  /// the first record that is damaged; what was appended before it is used.
+  /// Appends the messages among a chunk's records, and adds connections that are new. Throws MalformedError
+  /// at the first record that is damaged; what was appended before it is used.
   virtual void parse(Bytes records, std::vector<ChunkMessage>& messages) = 0;
 
   /// Bytes of the file: fewer than `size` where it ends.
@@ -40,7 +40,8 @@ class ChunkedBag : public Bag {
   void fault(std::uint64_t byte, const std::string& reason) {
     faults_.add("byte " + std::to_string(byte), reason);
   }
-  /// The number under which the format knows a connection, such as an MCAP channel's. The first description wins.
+  /// The number under which the format knows a connection, such as an MCAP channel's. The first description
+  /// wins.
   void connect(std::uint32_t number, Connection connection);
   std::optional<std::size_t> connection_of(std::uint32_t number) const;
 

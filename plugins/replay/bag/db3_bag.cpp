@@ -47,10 +47,12 @@ class Db3Bag final : public Bag {
       if (!in_file_order_ && in_order_.size() < kMaxRemembered) in_order_.push_back(row);
       const auto connection = by_id_.find(topic);
       if (connection == by_id_.end()) {
-        faults_.add(place_of(row), "a message of the topic " + std::to_string(topic) + ", which is not described");
+        faults_.add(place_of(row),
+                    "a message of the topic " + std::to_string(topic) + ", which is not described");
         continue;
       }
-      if (!wanted_.empty() && (connection->second >= wanted_.size() || !wanted_[connection->second])) continue;
+      if (!wanted_.empty() && (connection->second >= wanted_.size() || !wanted_[connection->second]))
+        continue;
       sqlite3_reset(data_.get());
       sqlite3_bind_int64(data_.get(), 1, row);
       if (const int data = sqlite3_step(data_.get()); data != SQLITE_ROW) {
@@ -59,7 +61,8 @@ class Db3Bag final : public Bag {
       }
       const auto* bytes = static_cast<const char*>(sqlite3_column_blob(data_.get(), 0));
       const auto size = static_cast<std::size_t>(sqlite3_column_bytes(data_.get(), 0));
-      return BagMessage{connection->second, time, Bytes(bytes, bytes ? size : 0), 0, static_cast<std::size_t>(row)};
+      return BagMessage{connection->second, time, Bytes(bytes, bytes ? size : 0), 0,
+                        static_cast<std::size_t>(row)};
     }
   }
 
@@ -76,16 +79,16 @@ class Db3Bag final : public Bag {
       }
     }
     sqlite3* raw = nullptr;
-    const int result = sqlite3_open_v2((uri + "?immutable=1").c_str(), &raw, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI,
-                                       nullptr);
+    const int result = sqlite3_open_v2((uri + "?immutable=1").c_str(), &raw,
+                                       SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
     Database db(raw, &sqlite3_close);
     if (result != SQLITE_OK) throw core::InputError(path, "", sqlite3_errstr(result));
     // A database that somebody else wrote: no functions of its schema are run, and damage is found.
     sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(raw, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, 1 << 28);
-    sqlite3_exec(raw, "PRAGMA cell_size_check=1; PRAGMA cache_size=-8000; PRAGMA temp_store=1", nullptr, nullptr,
-                 nullptr);
+    sqlite3_exec(raw, "PRAGMA cell_size_check=1; PRAGMA cache_size=-8000; PRAGMA temp_store=1", nullptr,
+                 nullptr, nullptr);
     return db;
   }
 
@@ -97,7 +100,8 @@ class Db3Bag final : public Bag {
 
   void read_topics() {
     std::map<std::string, std::string> definitions;  // of bags since ROS 2 Iron
-    if (const auto rows = prepare("SELECT topic_type, encoded_message_definition, encoding FROM message_definitions"))
+    if (const auto rows =
+            prepare("SELECT topic_type, encoded_message_definition, encoding FROM message_definitions"))
       while (sqlite3_step(rows.get()) == SQLITE_ROW)
         if (text_at(rows.get(), 2) == "ros2msg") definitions[text_at(rows.get(), 0)] = text_at(rows.get(), 1);
     const auto rows = prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id");
@@ -113,11 +117,13 @@ class Db3Bag final : public Bag {
       connections_.push_back(std::move(c));
     }
     if (result != SQLITE_DONE)
-      throw core::InputError(path_, "table topics", std::string("is no bag of ROS 2: ") + sqlite3_errmsg(db_.get()));
+      throw core::InputError(path_, "table topics",
+                             std::string("is no bag of ROS 2: ") + sqlite3_errmsg(db_.get()));
     if (connections_.empty()) throw core::InputError(path_, "table topics", "holds no topic");
   }
 
-  /// The order of time may lead over damaged pages: reads on by row, without the index. False at the second damage.
+  /// The order of time may lead over damaged pages: reads on by row, without the index. False at the second
+  /// damage.
   bool read_in_file_order(int problem) {
     faults_.add(last_row_ == 0 ? "table messages" : place_of(last_row_),
                 std::string(sqlite3_errstr(problem)) +

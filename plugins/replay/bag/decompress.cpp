@@ -13,7 +13,8 @@ namespace {
 /// Output that grows by a step at a time.
 class GrowingOutput {
  public:
-  explicit GrowingOutput(std::uint64_t declared) : step_(std::clamp<std::uint64_t>(declared, 1u << 12, 1u << 22)) {}
+  explicit GrowingOutput(std::uint64_t declared)
+      : step_(std::clamp<std::uint64_t>(declared, 1u << 12, 1u << 22)) {}
   /// Room for at least one more byte; false when the chunk is too large.
   bool make_room() {
     if (used_ < bytes_.size()) return true;
@@ -60,7 +61,8 @@ std::string bunzip(Bytes in, GrowingOutput& out) {
 std::string unlz4(Bytes in, GrowingOutput& out) {
   LZ4F_dctx* raw = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION))) return "lz4 cannot be set up";
-  const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> context(raw, LZ4F_freeDecompressionContext);
+  const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> context(raw,
+                                                                             LZ4F_freeDecompressionContext);
   for (std::size_t at = 0;;) {
     if (!out.make_room()) return kTooLarge;
     std::size_t given = out.room_bytes(), taken = in.size() - at;
@@ -74,7 +76,8 @@ std::string unlz4(Bytes in, GrowingOutput& out) {
 }
 
 std::string unzstd(Bytes in, GrowingOutput& out) {
-  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(), ZSTD_freeDStream);
+  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
+                                                                             ZSTD_freeDStream);
   if (!stream) return "zstd cannot be set up";
   ZSTD_inBuffer input{in.data(), in.size(), 0};
   for (;;) {

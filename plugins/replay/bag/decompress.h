@@ -10,7 +10,8 @@ namespace karst::replay {
 enum class Compression { none, bz2, lz4, zstd };
 constexpr auto names_of(Compression) {
   using enum Compression;
-  return std::to_array<core::Named<Compression>>({{none, "none"}, {bz2, "bz2"}, {lz4, "lz4"}, {zstd, "zstd"}});
+  return std::to_array<core::Named<Compression>>(
+      {{none, "none"}, {bz2, "bz2"}, {lz4, "lz4"}, {zstd, "zstd"}});
 }
 
 /// A chunk that is larger than this is refused: writers make chunks of about a megabyte.

@@ -16,10 +16,10 @@ enum McapOpcode : std::uint8_t {
   kChunkIndex = 0x08,
 };
 constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
-constexpr std::uint64_t kHead = 9;                     // of a record: opcode and length
-constexpr std::uint64_t kFooterBytes = kHead + 20;     // the last record, before the last magic
-constexpr std::uint64_t kMaxDescription = 16u << 20;   // a schema or channel that is larger is refused
-constexpr std::uint64_t kLooseBytes = 4u << 20;        // messages outside chunks are read so many at a time
+constexpr std::uint64_t kHead = 9;                    // of a record: opcode and length
+constexpr std::uint64_t kFooterBytes = kHead + 20;    // the last record, before the last magic
+constexpr std::uint64_t kMaxDescription = 16u << 20;  // a schema or channel that is larger is refused
+constexpr std::uint64_t kLooseBytes = 4u << 20;       // messages outside chunks are read so many at a time
 constexpr std::uint64_t kMaxMcapTime = std::numeric_limits<std::int64_t>::max();
 
 std::string_view text_of(Bytes b) { return {b.data(), b.size()}; }
@@ -194,7 +194,8 @@ class McapBag final : public ChunkedBag {
       if (opcode != kChunkIndex) continue;
       ByteCursor index(body, 16);
       const auto offset = index.take<std::uint64_t>(), length = index.take<std::uint64_t>();
-      if (offset <= damage || length < kHead || offset > file_bytes() || length > file_bytes() - offset) continue;
+      if (offset <= damage || length < kHead || offset > file_bytes() || length > file_bytes() - offset)
+        continue;
       const std::string head = read_at(offset, kHead);
       ByteCursor h{Bytes(head)};
       if (h.take<std::uint8_t>() == kChunk && h.take<std::uint64_t>() == length - kHead)

@@ -11,8 +11,8 @@ struct StructureLayout {
   std::size_t stride = 0;
 };
 
-/// nullopt if the structure has arrays or texts, or gaps that depend on where it stands: with CDR they do unless the
-/// first member has the greatest alignment.
+/// nullopt if the structure has arrays or texts, or gaps that depend on where it stands: with CDR they do
+/// unless the first member has the greatest alignment.
 std::optional<StructureLayout> layout_of_structure(const MessageType& type, bool aligned) {
   if (type.fields.empty()) return std::nullopt;
   StructureLayout layout;
@@ -36,8 +36,9 @@ Bytes WireReader::take_numbers(ValueType type, std::size_t count) {
   const std::size_t size = size_of(type);
   if (format_.aligned && count > 0) at_ = std::min((at_ + size - 1) / size * size, bytes_.size());
   if (count > left() / size)
-    throw MalformedError("ends within a value: " + std::to_string(count) + " numbers of " + std::to_string(size) +
-                             " bytes are announced, " + std::to_string(left()) + " bytes are left",
+    throw MalformedError("ends within a value: " + std::to_string(count) + " numbers of " +
+                             std::to_string(size) + " bytes are announced, " + std::to_string(left()) +
+                             " bytes are left",
                          at_);
   const Bytes part = bytes_.subspan(at_, count * size);
   at_ += part.size();
@@ -113,7 +114,8 @@ const Message::Value& Message::find(std::string_view path, MessageField::Kind ki
     const MessageField& f = type_->fields[i];
     if (f.path != path) continue;
     if (f.kind != kind || (f.arity != MessageField::Arity::one) != array)
-      throw MalformedError("the member " + std::string(path) + " of " + type_->name + " is of another type", 0);
+      throw MalformedError("the member " + std::string(path) + " of " + type_->name + " is of another type",
+                           0);
     return values_[i];
   }
   throw MalformedError("the type " + type_->name + " has no member " + std::string(path), 0);
@@ -121,7 +123,8 @@ const Message::Value& Message::find(std::string_view path, MessageField::Kind ki
 
 double Message::number(std::string_view path) const {
   const Value& v = find(path, MessageField::Kind::number, false);
-  return value_at(v.bytes.data(), type_->fields[static_cast<std::size_t>(&v - values_.data())].number, format_.order);
+  return value_at(v.bytes.data(), type_->fields[static_cast<std::size_t>(&v - values_.data())].number,
+                  format_.order);
 }
 
 std::int64_t Message::whole(std::string_view path) const {
@@ -167,9 +170,8 @@ Message::Records Message::records(std::string_view path) const {
   if (!layout) throw MalformedError("the elements of " + std::string(path) + " are not laid out alike", 0);
   Records records{v.bytes, v.count, layout->stride, {}};
   for (std::size_t i = 0; i < element.fields.size(); ++i)
-    records.fields.emplace_back(
-        element.fields[i].path,
-        Field{Role::none, element.fields[i].number, layout->offsets[i], layout->stride});
+    records.fields.emplace_back(element.fields[i].path, Field{Role::none, element.fields[i].number,
+                                                              layout->offsets[i], layout->stride});
   return records;
 }
 

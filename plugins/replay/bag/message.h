@@ -5,7 +5,8 @@
 
 namespace karst::replay {
 
-/// How values follow each other. ROS 1: little-endian, without gaps. CDR: each number at a multiple of its size.
+/// How values follow each other. ROS 1: little-endian, without gaps. CDR: each number at a multiple of its
+/// size.
 struct WireFormat {
   std::endian order = std::endian::little;
   bool aligned = false;

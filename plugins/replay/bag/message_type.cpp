@@ -127,8 +127,8 @@ class Flattener {
     }
   }
 
-  void add_structure(const std::string& type, const std::string& package, MessageField field, std::size_t line,
-                     int depth, std::vector<MessageField>& fields) {
+  void add_structure(const std::string& type, const std::string& package, MessageField field,
+                     std::size_t line, int depth, std::vector<MessageField>& fields) {
     const bool is_time = dialect_ == Dialect::ros1 && (type == "time" || type == "duration");
     const std::string name = is_time ? type : full_name(type, package);
     if (field.arity == MessageField::Arity::one) {

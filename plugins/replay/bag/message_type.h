@@ -32,8 +32,8 @@ struct MessageType {
   std::vector<MessageField> fields;  // in the order in which they are stored
 };
 
-/// `definition`: the type's members, then those of other types, each after a line of = and "MSG: package/Name".
-/// Throws MalformedError, with the number of the line in its text, on what is no definition.
+/// `definition`: the type's members, then those of other types, each after a line of = and "MSG:
+/// package/Name". Throws MalformedError, with the number of the line in its text, on what is no definition.
 MessageType parse_message_type(const std::string& name, std::string_view definition, Dialect dialect);
 
 /// The definition of one of the types that karst uses, for bags without definitions; "" if it is not known.

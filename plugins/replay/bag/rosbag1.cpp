@@ -1,5 +1,5 @@
-// Bags of ROS 1, format 2.0 (http://wiki.ros.org/Bags/Format/2.0): records of a header of named fields and data,
-// each after its length as 32 bits.
+// Bags of ROS 1, format 2.0 (http://wiki.ros.org/Bags/Format/2.0): records of a header of named fields and
+// data, each after its length as 32 bits.
 #include "core_stack/common/error.h"
 #include "plugins/replay/bag/chunked_bag.h"
 
@@ -45,7 +45,8 @@ class HeaderFields {
   }
   core::TimeNs time(std::string_view name) const {
     const auto both = number<std::uint64_t>(name);  // seconds, then nanoseconds
-    return static_cast<core::TimeNs>(both & 0xffffffff) * core::kSecond + static_cast<core::TimeNs>(both >> 32);
+    return static_cast<core::TimeNs>(both & 0xffffffff) * core::kSecond +
+           static_cast<core::TimeNs>(both >> 32);
   }
 
  private:
@@ -173,7 +174,8 @@ class Rosbag1 final : public ChunkedBag {
   static void note_start(const HeaderFields& fields, const std::string& first_entry, ChunkPlace& chunk) {
     if (fields.number<std::uint32_t>("ver") != 1 || first_entry.size() < 12) return;
     ByteCursor at{Bytes(first_entry)};
-    const core::TimeNs s = at.take<std::uint32_t>(), ns = at.take<std::uint32_t>(), time = s * core::kSecond + ns;
+    const core::TimeNs s = at.take<std::uint32_t>(), ns = at.take<std::uint32_t>(),
+                       time = s * core::kSecond + ns;
     chunk.start = std::min(chunk.start.value_or(time), time);
   }
 

@@ -27,7 +27,8 @@ void assign_roles(NamedFields& f, const FieldNames& names) {
   std::set<Role> seen;
   for (std::size_t i = 0; i < f.fields.size(); ++i) {
     f.fields[i].role = role_of(f.names[i], names);
-    if (f.fields[i].role != Role::none && !seen.insert(f.fields[i].role).second) f.fields[i].role = Role::none;
+    if (f.fields[i].role != Role::none && !seen.insert(f.fields[i].role).second)
+      f.fields[i].role = Role::none;
   }
   for (const auto& [role, name] : {std::pair{Role::x, "x"}, {Role::y, "y"}, {Role::z, "z"}})
     if (!seen.contains(role)) throw MalformedError(std::string("the points have no field ") + name, 0);
@@ -41,14 +42,15 @@ NamedFields fields_of_cloud(const Message& m, const FieldNames& names) {
     const auto type = type_of_point_field(field.whole("datatype"));
     if (!type && role_of(name, names) == Role::none) continue;  // not used
     if (!type)
-      throw MalformedError("the field " + name + " has the unknown type " +
-                               std::to_string(field.whole("datatype")),
-                           0);
+      throw MalformedError(
+          "the field " + name + " has the unknown type " + std::to_string(field.whole("datatype")), 0);
     const std::int64_t offset = field.whole("offset");
     if (offset + static_cast<std::int64_t>(size_of(*type)) > step)
-      throw MalformedError("the field " + name + " lies beyond the " + std::to_string(step) + " bytes of a point", 0);
+      throw MalformedError(
+          "the field " + name + " lies beyond the " + std::to_string(step) + " bytes of a point", 0);
     result.names.push_back(name);
-    result.fields.push_back({Role::none, *type, static_cast<std::size_t>(offset), static_cast<std::size_t>(step)});
+    result.fields.push_back(
+        {Role::none, *type, static_cast<std::size_t>(offset), static_cast<std::size_t>(step)});
   }
   assign_roles(result, names);
   return result;
@@ -70,9 +72,11 @@ core::Vec3 vector_of(const Message& m, const std::string& path) {
   return {m.number(path + ".x"), m.number(path + ".y"), m.number(path + ".z")};
 }
 core::Quat rotation_of_message(const Message& m, const std::string& path) {
-  const core::Quat q(m.number(path + ".w"), m.number(path + ".x"), m.number(path + ".y"), m.number(path + ".z"));
+  const core::Quat q(m.number(path + ".w"), m.number(path + ".x"), m.number(path + ".y"),
+                     m.number(path + ".z"));
   const double norm = q.norm();
-  if (!std::isfinite(norm) || norm < 0.5 || norm > 2) throw MalformedError("a rotation is no unit quaternion", 0);
+  if (!std::isfinite(norm) || norm < 0.5 || norm > 2)
+    throw MalformedError("a rotation is no unit quaternion", 0);
   return q.normalized();
 }
 
@@ -80,7 +84,8 @@ core::Quat rotation_of_message(const Message& m, const std::string& path) {
 
 Message MessageDecoder::decode(std::size_t connection, Bytes bytes) {
   const Connection& c = connections_->at(connection);
-  if (c.encoding == Encoding::unknown) throw MalformedError("its encoding is neither CDR nor that of ROS 1", 0);
+  if (c.encoding == Encoding::unknown)
+    throw MalformedError("its encoding is neither CDR nor that of ROS 1", 0);
   const Dialect dialect = c.encoding == Encoding::ros1 ? Dialect::ros1 : Dialect::ros2;
   auto type = types_.find(connection);
   if (type == types_.end()) {
@@ -114,7 +119,8 @@ CloudMessage cloud_of(std::string_view type, const Message& m, const FieldNames&
     decode(records.bytes, records.count, f.fields, m.order(), builder);
   } else {
     const NamedFields f = fields_of_cloud(m, names);
-    const auto height = static_cast<std::uint64_t>(m.whole("height")), width = static_cast<std::uint64_t>(m.whole("width")),
+    const auto height = static_cast<std::uint64_t>(m.whole("height")),
+               width = static_cast<std::uint64_t>(m.whole("width")),
                step = static_cast<std::uint64_t>(m.whole("point_step"));
     // Drivers of clouds of one row do not always fill in row_step.
     const std::uint64_t row = height > 1 ? static_cast<std::uint64_t>(m.whole("row_step")) : width * step;
@@ -139,7 +145,8 @@ CloudMessage cloud_of(std::string_view type, const Message& m, const FieldNames&
 }
 
 std::vector<CloudField> cloud_fields(std::string_view type, const Message& m, const FieldNames& names) {
-  const NamedFields f = is_livox(type) ? fields_of_livox(m.records("points"), names) : fields_of_cloud(m, names);
+  const NamedFields f =
+      is_livox(type) ? fields_of_livox(m.records("points"), names) : fields_of_cloud(m, names);
   std::vector<CloudField> result;
   for (std::size_t i = 0; i < f.fields.size(); ++i)
     result.push_back({f.names[i], f.fields[i].type, f.fields[i].role});
@@ -147,7 +154,8 @@ std::vector<CloudField> cloud_fields(std::string_view type, const Message& m, co
 }
 
 core::ImuSample imu_of(const Message& m) {
-  const core::ImuSample sample{stamp_of(m), vector_of(m, "linear_acceleration"), vector_of(m, "angular_velocity")};
+  const core::ImuSample sample{stamp_of(m), vector_of(m, "linear_acceleration"),
+                               vector_of(m, "angular_velocity")};
   if (!sample.specific_force_mps2.allFinite() || !sample.body_rate_radps.allFinite())
     throw MalformedError("its numbers are not finite", 0);
   return sample;
@@ -165,8 +173,8 @@ std::vector<FrameTransform> transforms_of(const Message& m) {
   return result;
 }
 
-std::optional<core::Pose> find_transform(const std::vector<FrameTransform>& transforms, const std::string& from,
-                                         const std::string& to) {
+std::optional<core::Pose> find_transform(const std::vector<FrameTransform>& transforms,
+                                         const std::string& from, const std::string& to) {
   std::map<std::string, core::Pose> reached{{from, core::Pose{}}};
   for (bool grew = true; grew && !reached.contains(to);) {
     grew = false;

@@ -54,8 +54,8 @@ struct FrameTransform {
 };
 std::vector<FrameTransform> transforms_of(const Message& m);
 /// The pose of `to` in `from`, if transforms connect them.
-std::optional<core::Pose> find_transform(const std::vector<FrameTransform>& transforms, const std::string& from,
-                                         const std::string& to);
+std::optional<core::Pose> find_transform(const std::vector<FrameTransform>& transforms,
+                                         const std::string& from, const std::string& to);
 
 struct StampedPose {
   core::TimeNs stamp = 0;

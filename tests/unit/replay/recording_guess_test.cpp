@@ -1,4 +1,5 @@
-// What karst finds out about the sensors in a bag: the drivers' fields, units and origins of their times, mounting.
+// What karst finds out about the sensors in a bag: the drivers' fields, units and origins of their times,
+// mounting.
 #include "plugins/replay/recording_guess.h"
 
 #include <gtest/gtest.h>
@@ -52,62 +53,73 @@ struct BagContent {
         for (const float v : {5 * std::cos(angle), 5 * std::sin(angle), 0.1f}) put(data, v);
         driver.rest(data, i, stamp, i * 100 * kMillisecond / kPoints);
       }
-      messages.push_back({t, stamp + 105 * kMillisecond,
-                          test::point_cloud2(Serializer::cdr_little, stamp, frame, driver.fields, driver.step, data)});
+      messages.push_back(
+          {t, stamp + 105 * kMillisecond,
+           test::point_cloud2(Serializer::cdr_little, stamp, frame, driver.fields, driver.step, data)});
     }
   }
   void add_imu(const std::string& name, const std::string& frame, double g) {
     const std::size_t t = topic(name, "sensor_msgs/Imu");
     for (int k = 0; k < 50; ++k) {
       const TimeNs stamp = kStart + k * 10 * kMillisecond;
-      messages.push_back({t, stamp, test::imu(Serializer::cdr_little, stamp, frame, {0, 0, g}, {0, 0, 0.25})});
+      messages.push_back(
+          {t, stamp, test::imu(Serializer::cdr_little, stamp, frame, {0, 0, g}, {0, 0, 0.25})});
     }
   }
   void add_transform(const std::string& parent, const std::string& child, const core::Pose& T) {
     const std::size_t t = topic("/tf_static", "tf2_msgs/TFMessage");
     Serializer s(Serializer::cdr_little);
     s.number(std::uint32_t{1}).header(kStart, parent).text(child);
-    for (const double v : {T.position.x(), T.position.y(), T.position.z(), T.orientation.x(), T.orientation.y(),
-                           T.orientation.z(), T.orientation.w()})
+    for (const double v : {T.position.x(), T.position.y(), T.position.z(), T.orientation.x(),
+                           T.orientation.y(), T.orientation.z(), T.orientation.w()})
       s.number(v);
     messages.push_back({t, kStart, s.bytes()});
   }
   std::string write(const Folder& dir) {
-    std::stable_sort(messages.begin(), messages.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+    std::stable_sort(messages.begin(), messages.end(),
+                     [](const auto& a, const auto& b) { return a.time < b.time; });
     return dir.write("a.mcap", test::mcap_file(topics, messages, {Compression::zstd, true, 10}));
   }
 };
 
 const Driver kOuster = {
-    {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"t", 12, 6}, {"reflectivity", 16, 4}, {"ring", 18, 2}}, 19,
+    {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"t", 12, 6}, {"reflectivity", 16, 4}, {"ring", 18, 2}},
+    19,
     [](std::string& b, int i, TimeNs, TimeNs after) {
       put(b, static_cast<std::uint32_t>(after));
       put(b, std::uint16_t{500});
       put(b, static_cast<std::uint8_t>(i % 8));
     }};
 const Driver kVelodyne = {
-    {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"intensity", 12, 7}, {"ring", 16, 4}, {"time", 18, 7}}, 22,
+    {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"intensity", 12, 7}, {"ring", 16, 4}, {"time", 18, 7}},
+    22,
     [](std::string& b, int i, TimeNs, TimeNs after) {
       put(b, 3.0f);
       put(b, static_cast<std::uint16_t>(i % 8));
       put(b, static_cast<float>(core::seconds(after)));
     }};
 const Driver kHesai = {
-    {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"intensity", 12, 7}, {"timestamp", 16, 8}, {"ring", 24, 4}}, 26,
+    {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"intensity", 12, 7}, {"timestamp", 16, 8}, {"ring", 24, 4}},
+    26,
     [](std::string& b, int i, TimeNs stamp, TimeNs after) {
       put(b, 3.0f);
       put(b, core::seconds(stamp + after));
       put(b, static_cast<std::uint16_t>(i % 8));
     }};
-const Driver kLivox = {
-    {{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}, {"intensity", 12, 7}, {"tag", 16, 2}, {"line", 17, 2}, {"timestamp", 18, 8}},
-    26,
-    [](std::string& b, int i, TimeNs stamp, TimeNs after) {
-      put(b, 3.0f);
-      put(b, std::uint8_t{0});
-      put(b, static_cast<std::uint8_t>(i % 4));
-      put(b, static_cast<double>(stamp + after));
-    }};
+const Driver kLivox = {{{"x", 0, 7},
+                        {"y", 4, 7},
+                        {"z", 8, 7},
+                        {"intensity", 12, 7},
+                        {"tag", 16, 2},
+                        {"line", 17, 2},
+                        {"timestamp", 18, 8}},
+                       26,
+                       [](std::string& b, int i, TimeNs stamp, TimeNs after) {
+                         put(b, 3.0f);
+                         put(b, std::uint8_t{0});
+                         put(b, static_cast<std::uint8_t>(i % 4));
+                         put(b, static_cast<double>(stamp + after));
+                       }};
 
 /// Whatever the driver: the sweep ends with its last point, 99.5 ms after the stamp.
 void expect_sweep(const std::string& path, double tolerance_s) {
@@ -157,8 +169,12 @@ TEST(RecordingGuess, LivoxMessagesOfItsOwnTypeAreRead) {
     s.number(std::uint32_t{kPoints});
     for (int i = 0; i < kPoints; ++i)
       s.number(static_cast<std::uint32_t>(i * 100 * kMillisecond / kPoints))
-          .number(5.0f).number(0.01f * static_cast<float>(i)).number(1.0f)
-          .number(std::uint8_t{40}).number(std::uint8_t{0}).number(static_cast<std::uint8_t>(i % 4));
+          .number(5.0f)
+          .number(0.01f * static_cast<float>(i))
+          .number(1.0f)
+          .number(std::uint8_t{40})
+          .number(std::uint8_t{0})
+          .number(static_cast<std::uint8_t>(i % 4));
     bag.messages.push_back({t, stamp + 105 * kMillisecond, s.bytes()});
   }
   bag.add_imu("/livox/imu", "livox_frame", 1.0);

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/rings.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "tests/unit/replay/folder.h"
 
 namespace karst::replay {

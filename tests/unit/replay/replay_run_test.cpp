@@ -8,8 +8,8 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/random.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
-#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/recording.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/evaluation/record/poses.h"
 #include "tests/unit/replay/folder.h"
 #include "tests/unit/replay/room_walk.h"
@@ -20,11 +20,11 @@ namespace {
 using core::Pose;
 using core::Vec3;
 using test::Folder;
-using test::put;
 using test::kBegin_s;
 using test::kPeriod_s;
 using test::kScans;
 using test::pose_at;
+using test::put;
 using test::scan_at;
 
 std::string name_of(int i) { return "scan" + std::to_string(i) + ".bin"; }

@@ -48,7 +48,7 @@ inline std::string scan_at(double end_s, core::Random& noise) {
       const double azimuth = std::numbers::pi * (1 - 2 * (j + 0.5) / kColumns),
                    elevation = 0.35 - 0.7 * ring / (kRings - 1);
       const core::Vec3 d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                   std::sin(elevation));
+                         std::sin(elevation));
       const core::Vec3 p = d * (range_in_room(T.position, T.orientation * d) + 0.01 * noise.normal());
       for (int a = 0; a < 3; ++a) put(bytes, static_cast<float>(p[a]));
       put(bytes, static_cast<float>(kPeriod_s - before_s));

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
+#include "plugins/replay/recording_info.h"
 #include "sdk/tools/recording_command.h"
 #include "sdk/tools/replay_command.h"
 #include "tests/unit/replay/bag/room_bag.h"
@@ -105,7 +106,8 @@ TEST(ReplayCommand, OfABagSaysWhatItAssumedAndOfADamagedOneWhatItLeftOut) {
   EXPECT_NE(p.error.find("The LiDAR is /os/points"), std::string::npos) << p.error;
   EXPECT_NE(p.out.find("12 scans, 0 of them lost"), std::string::npos) << p.out;
   const std::string cut = dir.write("cut.mcap", whole.substr(0, whole.size() * 2 / 3));
-  const Printed damaged = run({"replay", cut, "--out", (dir.path() / "run2").string(), "--no-report", "--quiet"});
+  const Printed damaged =
+      run({"replay", cut, "--out", (dir.path() / "run2").string(), "--no-report", "--quiet"});
   EXPECT_EQ(damaged.code, 1);
   EXPECT_NE(damaged.out.find(" scans, 0 of them lost"), std::string::npos) << damaged.out;
   EXPECT_NE(damaged.error.find("the bag is damaged"), std::string::npos) << damaged.error;

@@ -23,8 +23,9 @@ void write_seeds(const std::filesystem::path& folder) {
     w.messages.resize(6);
     std::string points;
     for (int i = 0; i < 5; ++i) points += std::string(18, static_cast<char>(i));
-    w.messages.push_back({0, w.messages.back().time + 1,
-                          test::point_cloud2(kind, w.messages.back().time, "os_sensor", test::kOusterFields, 18, points)});
+    w.messages.push_back(
+        {0, w.messages.back().time + 1,
+         test::point_cloud2(kind, w.messages.back().time, "os_sensor", test::kOusterFields, 18, points)});
     return w;
   };
   const auto write = [&](const std::string& name, const std::string& bytes) {
@@ -61,9 +62,11 @@ int main(int argc, char** argv) try {
   }
   if (argc == 4 && std::strcmp(argv[1], "replay") == 0) {
     const replay::RecordingSource source = replay::open_source(argv[2], "");
-    replay::replay_recording(*source.sensors, {}, argv[3], [](auto, const auto&, const auto&) { return true; });
+    replay::replay_recording(*source.sensors, {}, argv[3],
+                             [](auto, const auto&, const auto&) { return true; });
     for (const std::string& d : source.sensors->damage().first) std::fprintf(stderr, "%s\n", d.c_str());
-    std::fputs(replay::file_bytes((std::filesystem::path(argv[3]) / "trajectory.tum").string()).c_str(), stdout);
+    std::fputs(replay::file_bytes((std::filesystem::path(argv[3]) / "trajectory.tum").string()).c_str(),
+               stdout);
     return source.sensors->damage().count > 0;
   }
   std::fprintf(stderr, "bag_interop files FOLDER | replay RECORDING RUN | seeds FOLDER\n");

@@ -2,11 +2,11 @@
 #include <gtest/gtest.h>
 
 #include "core_stack/common/error.h"
-#include "plugins/replay/bag_sensors.h"
 #include "plugins/replay/bag/message_type.h"
-#include "plugins/replay/scan_files/decimal_time.h"
+#include "plugins/replay/bag_sensors.h"
 #include "plugins/replay/recording.h"
 #include "plugins/replay/recording_source.h"
+#include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/scan_files/scan_file.h"
 #include "sdk/evaluation/record/poses.h"
 #include "sdk/replay/replay_run.h"
@@ -30,7 +30,8 @@ struct Replayed {
 Replayed replayed(const std::string& path, const Folder& dir, const std::string& name) {
   const RecordingSource source = open_source(path, "");
   const auto run = dir.path() / ("run_" + name);
-  const ReplaySummary s = replay_recording(*source.sensors, {}, run, [](auto, const auto&, const auto&) { return true; });
+  const ReplaySummary s =
+      replay_recording(*source.sensors, {}, run, [](auto, const auto&, const auto&) { return true; });
   return {file_bytes((run / "trajectory.tum").string()), s, source.sensors->damage()};
 }
 
@@ -48,7 +49,8 @@ TEST(BagReplay, EveryFormatGivesTheTrajectoryOfTheFiles) {
     const Replayed r = replayed(file, dir, name);
     EXPECT_TRUE(r.trajectory == expected) << name;
     EXPECT_GT(r.summary.imu_samples, 200u) << name;
-    EXPECT_EQ(r.damage.count > 0, cut) << name << ": " << (r.damage.first.empty() ? "" : r.damage.first.front());
+    EXPECT_EQ(r.damage.count > 0, cut)
+        << name << ": " << (r.damage.first.empty() ? "" : r.damage.first.front());
   };
   const Written one = written(Serializer::ros1), little = written(Serializer::cdr_little),
                 big = written(Serializer::cdr_big);
@@ -60,10 +62,12 @@ TEST(BagReplay, EveryFormatGivesTheTrajectoryOfTheFiles) {
     }
   for (const Compression c : {none, lz4, zstd})
     for (const bool index : {true, false}) {
-      const std::string name = std::string("mcap_") + core::name_of(c) + (index ? "" : "_without_summary") + ".mcap";
+      const std::string name =
+          std::string("mcap_") + core::name_of(c) + (index ? "" : "_without_summary") + ".mcap";
       expect_same(dir.write(name, test::mcap_file(little.topics, little.messages, {c, index, 30})), name);
     }
-  expect_same(dir.write("loose.mcap", test::mcap_file(big.topics, big.messages, {none, false, 0})), "loose.mcap");
+  expect_same(dir.write("loose.mcap", test::mcap_file(big.topics, big.messages, {none, false, 0})),
+              "loose.mcap");
   for (const bool index : {true, false}) {
     const std::string name = index ? "a.db3" : "b.db3", path = (dir.path() / name).string();
     test::write_db3(path, (index ? little : big).topics, (index ? little : big).messages, index);
@@ -92,9 +96,12 @@ TEST(BagReplay, AFolderOfSplitBagsIsOneRecording) {
 /// Records in another order than that of time, as they are where several publishers are recorded.
 TEST(BagReplay, MessagesOfChunksThatOverlapComeInTheOrderOfTime) {
   Written w = written(Serializer::cdr_little);
-  for (std::size_t i = 0; i + 7 < w.messages.size(); i += 7) std::reverse(w.messages.begin() + static_cast<std::ptrdiff_t>(i), w.messages.begin() + static_cast<std::ptrdiff_t>(i + 7));
+  for (std::size_t i = 0; i + 7 < w.messages.size(); i += 7)
+    std::reverse(w.messages.begin() + static_cast<std::ptrdiff_t>(i),
+                 w.messages.begin() + static_cast<std::ptrdiff_t>(i + 7));
   Folder dir;
-  const auto bag = open_bag(dir.write("a.mcap", test::mcap_file(w.topics, w.messages, {Compression::zstd, true, 5})));
+  const auto bag =
+      open_bag(dir.write("a.mcap", test::mcap_file(w.topics, w.messages, {Compression::zstd, true, 5})));
   core::TimeNs last = 0;
   std::size_t count = 0;
   while (const auto m = bag->next()) {
@@ -117,7 +124,8 @@ TEST(BagReplay, OfABagThatIsCutAnywhereTheBeginningIsRead) {
   for (const auto& [name, bytes] : files) {
     std::size_t before = 0;
     for (int part = 1; part <= 20; ++part) {
-      const std::string path = dir.write(name, bytes.substr(0, bytes.size() * static_cast<std::size_t>(part) / 21));
+      const std::string path =
+          dir.write(name, bytes.substr(0, bytes.size() * static_cast<std::size_t>(part) / 21));
       const auto bag = open_bag(path);
       std::size_t count = 0;
       while (bag->next()) ++count;

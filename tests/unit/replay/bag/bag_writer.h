@@ -109,7 +109,8 @@ inline std::string compressed(replay::Compression c, const std::string& in) {
   std::string out(2 * in.size() + 4096, '\0');
   if (c == replay::Compression::bz2) {
     auto n = static_cast<unsigned>(out.size());
-    BZ2_bzBuffToBuffCompress(out.data(), &n, const_cast<char*>(in.data()), static_cast<unsigned>(in.size()), 9, 0, 0);
+    BZ2_bzBuffToBuffCompress(out.data(), &n, const_cast<char*>(in.data()), static_cast<unsigned>(in.size()),
+                             9, 0, 0);
     out.resize(n);
   } else if (c == replay::Compression::lz4) {
     LZ4F_preferences_t preferences{};  // what ROS 1 writes, and reads
@@ -128,7 +129,9 @@ inline std::string field(const std::string& name, const std::string& value) {
   put(s, static_cast<std::uint32_t>(name.size() + 1 + value.size()));
   return s + name + "=" + value;
 }
-inline std::string field(const std::string& name, const char* value) { return field(name, std::string(value)); }
+inline std::string field(const std::string& name, const char* value) {
+  return field(name, std::string(value));
+}
 template <class T>
 std::string field(const std::string& name, T value) {
   std::string raw;
@@ -150,8 +153,8 @@ inline std::string record(const std::string& header, const std::string& data) {
 }
 }  // namespace rosbag1
 
-inline std::string ros1_bag(const std::vector<WrittenTopic>& topics, const std::vector<WrittenMessage>& messages,
-                            const BagVariant& variant) {
+inline std::string ros1_bag(const std::vector<WrittenTopic>& topics,
+                            const std::vector<WrittenMessage>& messages, const BagVariant& variant) {
   using namespace rosbag1;
   const auto connection = [&](std::size_t i) {
     const auto number = static_cast<std::uint32_t>(i);
@@ -161,7 +164,8 @@ inline std::string ros1_bag(const std::vector<WrittenTopic>& topics, const std::
   };
   const auto header = [&](std::uint64_t index, std::uint32_t chunks) {
     const std::string h = field("op", std::uint8_t{3}) + field("index_pos", index) +
-                          field("conn_count", static_cast<std::uint32_t>(topics.size())) + field("chunk_count", chunks);
+                          field("conn_count", static_cast<std::uint32_t>(topics.size())) +
+                          field("chunk_count", chunks);
     return "#ROSBAG V2.0\n" + record(h, std::string(4096 - 8 - h.size(), ' '));
   };
   std::string file = header(0, 0), infos;
@@ -197,10 +201,11 @@ inline std::string ros1_bag(const std::vector<WrittenTopic>& topics, const std::
       put(counts, static_cast<std::uint32_t>(topic));
       put(counts, count);
     }
-    infos += record(field("op", std::uint8_t{6}) + field("ver", std::uint32_t{1}) + field("chunk_pos", position) +
-                        field("start_time", time(first)) + field("end_time", time(last)) +
-                        field("count", static_cast<std::uint32_t>(entries.size())),
-                    counts);
+    infos +=
+        record(field("op", std::uint8_t{6}) + field("ver", std::uint32_t{1}) + field("chunk_pos", position) +
+                   field("start_time", time(first)) + field("end_time", time(last)) +
+                   field("count", static_cast<std::uint32_t>(entries.size())),
+               counts);
   }
   if (!variant.index) return file;
   const std::uint64_t index = file.size();
@@ -222,8 +227,8 @@ inline std::string text(const std::string& t) {
 }
 }  // namespace mcap
 
-inline std::string mcap_file(const std::vector<WrittenTopic>& topics, const std::vector<WrittenMessage>& messages,
-                             const BagVariant& variant) {
+inline std::string mcap_file(const std::vector<WrittenTopic>& topics,
+                             const std::vector<WrittenMessage>& messages, const BagVariant& variant) {
   using namespace mcap;
   std::string descriptions;
   for (std::size_t i = 0; i < topics.size(); ++i) {
@@ -231,8 +236,8 @@ inline std::string mcap_file(const std::vector<WrittenTopic>& topics, const std:
     const auto slash = topics[i].type.find('/');
     std::string schema, channel;
     put(schema, id);
-    schema += text(topics[i].type.substr(0, slash) + "/msg" + topics[i].type.substr(slash)) + text("ros2msg") +
-              text(topics[i].definition);
+    schema += text(topics[i].type.substr(0, slash) + "/msg" + topics[i].type.substr(slash)) +
+              text("ros2msg") + text(topics[i].definition);
     put(channel, id);
     put(channel, id);
     channel += text(topics[i].topic) + text("cdr");
@@ -253,7 +258,8 @@ inline std::string mcap_file(const std::vector<WrittenTopic>& topics, const std:
     file += descriptions;
     for (const auto& m : messages) file += message(m);
   }
-  for (std::size_t i = 0; variant.messages_in_chunk > 0 && i < messages.size(); i += variant.messages_in_chunk) {
+  for (std::size_t i = 0; variant.messages_in_chunk > 0 && i < messages.size();
+       i += variant.messages_in_chunk) {
     std::string chunk = i == 0 ? descriptions : "", body, index;
     core::TimeNs first = messages[i].time, last = first;
     for (std::size_t j = i; j < std::min(messages.size(), i + variant.messages_in_chunk); ++j) {
@@ -300,7 +306,8 @@ inline void write_db3(const std::string& path, const std::vector<WrittenTopic>& 
   }
   for (const auto& m : messages) {
     sqlite3_stmt* insert = nullptr;
-    sqlite3_prepare_v2(db, "INSERT INTO messages(topic_id, timestamp, data) VALUES(?,?,?)", -1, &insert, nullptr);
+    sqlite3_prepare_v2(db, "INSERT INTO messages(topic_id, timestamp, data) VALUES(?,?,?)", -1, &insert,
+                       nullptr);
     sqlite3_bind_int64(insert, 1, static_cast<sqlite3_int64>(m.topic + 1));
     sqlite3_bind_int64(insert, 2, m.time);
     sqlite3_bind_blob(insert, 3, m.bytes.data(), static_cast<int>(m.bytes.size()), nullptr);

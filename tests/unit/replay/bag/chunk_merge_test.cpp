@@ -24,8 +24,8 @@ Chunks random_chunks(core::Random& random, std::size_t count, double length) {
     std::vector<ChunkMessage> messages;
     const auto size = static_cast<std::size_t>(random.uniform() * 8);
     for (std::size_t k = 0; k < size; ++k)
-      messages.push_back({static_cast<core::TimeNs>(100 * static_cast<double>(i) + random.uniform() * length), i,
-                          10 * k, 10});
+      messages.push_back({static_cast<core::TimeNs>(100 * static_cast<double>(i) + random.uniform() * length),
+                          i, 10 * k, 10});
     core::TimeNs start = static_cast<core::TimeNs>(100 * i);
     for (const auto& m : messages) start = &m == &messages.front() ? m.time : std::min(start, m.time);
     c.start.push_back(start);
@@ -37,13 +37,18 @@ Chunks random_chunks(core::Random& random, std::size_t count, double length) {
 TEST(ChunkMerge, GivesTheOrderOfASort) {
   core::Random random(3);
   for (int trial = 0; trial < 200; ++trial) {
-    const Chunks c = random_chunks(random, static_cast<std::size_t>(random.uniform() * 20), random.uniform() * 1000);
+    const Chunks c =
+        random_chunks(random, static_cast<std::size_t>(random.uniform() * 20), random.uniform() * 1000);
     std::vector<core::TimeNs> expected, found;
     for (const auto& chunk : c.messages)
       for (const auto& m : chunk) expected.push_back(m.time);
     std::sort(expected.begin(), expected.end());
     ChunkMerge merge(
-        c.start, [&](std::size_t i) { return LoadedChunk{std::string(80, 'x'), c.messages[i]}; }, 1u << 30);
+        c.start,
+        [&](std::size_t i) {
+          return LoadedChunk{std::string(80, 'x'), c.messages[i]};
+        },
+        1u << 30);
     while (const auto item = merge.next()) {
       found.push_back(item->message.time);
       EXPECT_EQ(item->message.connection, item->chunk);

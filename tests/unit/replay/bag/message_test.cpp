@@ -39,8 +39,9 @@ constexpr const char* kNested =
 
 TEST(MessageType, FlattensStructuresAndKeepsArraysOfThem) {
   const MessageType type = parse_message_type("package/Outer", kNested, Dialect::ros1);
-  EXPECT_EQ(paths_of(type), (std::vector<std::string>{"header.seq", "header.stamp.sec", "header.stamp.nanosec",
-                                                      "header.frame_id", "data", "pairs", "name", "few", "scale"}));
+  EXPECT_EQ(paths_of(type),
+            (std::vector<std::string>{"header.seq", "header.stamp.sec", "header.stamp.nanosec",
+                                      "header.frame_id", "data", "pairs", "name", "few", "scale"}));
   EXPECT_EQ(type.fields[5].count, 2u);
   EXPECT_EQ(paths_of(*type.fields[5].structure), (std::vector<std::string>{"a", "b.x"}));
   EXPECT_EQ(type.fields[8].number, ValueType::float64);
@@ -92,11 +93,15 @@ TEST(Message, Ros1HasNoGapsAndCdrHasThem) {
   const std::string one("\x07\0\0\0\0\0\0\xf8\x3f\x02\0\0\0hi\x02\0\0\0\xff\xff\x02\0\x04\x03\x02\x01", 27);
   const Message m1 = Message::of(type, one, Dialect::ros1);
   // Offsets after the four bytes of CDR: a 0, b 8, s 16 (length 3 with the zero), n 24, last 32.
-  const std::string little("\0\1\0\0\x07\0\0\0\0\0\0\0\0\0\0\0\0\0\xf8\x3f\x03\0\0\0hi\0\0\x02\0\0\0\xff\xff\x02\0\x04\x03\x02\x01",
-                           40);
+  const std::string little(
+      "\0\1\0\0\x07\0\0\0\0\0\0\0\0\0\0\0\0\0\xf8\x3f\x03\0\0\0hi\0\0\x02\0\0\0\xff\xff\x02\0\x04\x03\x02"
+      "\x01",
+      40);
   const Message m2 = Message::of(type, little, Dialect::ros2);
-  const std::string big("\0\0\0\0\x07\0\0\0\0\0\0\0\x3f\xf8\0\0\0\0\0\0\0\0\0\x03hi\0\0\0\0\0\x02\xff\xff\0\x02\x01\x02\x03\x04",
-                        40);
+  const std::string big(
+      "\0\0\0\0\x07\0\0\0\0\0\0\0\x3f\xf8\0\0\0\0\0\0\0\0\0\x03hi\0\0\0\0\0\x02\xff\xff\0\x02\x01\x02\x03"
+      "\x04",
+      40);
   const Message m3 = Message::of(type, big, Dialect::ros2);
   for (const Message* m : {&m1, &m2, &m3}) {
     EXPECT_EQ(m->whole("a"), 7);
@@ -125,40 +130,47 @@ TEST(Message, OtherEncodingsThanCdrAreRefused) {
 /// Livox' points have 19 bytes: in CDR each begins at a multiple of 4, in ROS 1 they touch.
 TEST(Message, StructuresThatAreLaidOutAlikeAreRecords) {
   const MessageType type = parse_message_type(
-      "p/T", "uint8 pad\nP[] points\nuint8 after\n====\nMSG: p/P\nuint32 t\nfloat32 x\nuint8 a\nuint8 b\nuint8 c\n",
+      "p/T",
+      "uint8 pad\nP[] points\nuint8 after\n====\nMSG: p/P\nuint32 t\nfloat32 x\nuint8 a\nuint8 b\nuint8 c\n",
       Dialect::ros2);
   for (const auto kind : {Serializer::ros1, Serializer::cdr_little, Serializer::cdr_big}) {
     Serializer s(kind);
     s.number(std::uint8_t{1}).number(std::uint32_t{3});
     for (std::uint32_t i = 0; i < 3; ++i)
-      s.number(i).number(0.5f * static_cast<float>(i)).number(std::uint8_t{1}).number(std::uint8_t{2}).number(
-          static_cast<std::uint8_t>(i));
+      s.number(i)
+          .number(0.5f * static_cast<float>(i))
+          .number(std::uint8_t{1})
+          .number(std::uint8_t{2})
+          .number(static_cast<std::uint8_t>(i));
     s.number(std::uint8_t{9});
     const Message m = Message::of(type, s.bytes(), kind == Serializer::ros1 ? Dialect::ros1 : Dialect::ros2);
     const Message::Records r = m.records("points");
     ASSERT_EQ(r.count, 3u);
     EXPECT_EQ(r.stride, kind == Serializer::ros1 ? 11u : 12u);
     ASSERT_EQ(r.fields.size(), 5u);
-    EXPECT_EQ(value_at(r.bytes.data() + 2 * r.stride + r.fields[1].second.offset, ValueType::float32, m.order()), 1.0);
-    EXPECT_EQ(value_at(r.bytes.data() + 2 * r.stride + r.fields[4].second.offset, ValueType::uint8, m.order()), 2);
+    EXPECT_EQ(
+        value_at(r.bytes.data() + 2 * r.stride + r.fields[1].second.offset, ValueType::float32, m.order()),
+        1.0);
+    EXPECT_EQ(
+        value_at(r.bytes.data() + 2 * r.stride + r.fields[4].second.offset, ValueType::uint8, m.order()), 2);
     EXPECT_EQ(m.whole("after"), 9);
     EXPECT_EQ(m.structures("points").at(1).number("x"), 0.5);
   }
 }
 
 TEST(Message, ALengthThatLiesIsAnErrorAndNoMemory) {
-  const MessageType type =
-      parse_message_type("p/T", "P[] points\n====\nMSG: p/P\nstring s\n", Dialect::ros1);
+  const MessageType type = parse_message_type("p/T", "P[] points\n====\nMSG: p/P\nstring s\n", Dialect::ros1);
   EXPECT_THROW(Message::of(type, std::string("\xff\xff\xff\xff\0\0\0\0", 8), Dialect::ros1), MalformedError);
   const MessageType numbers = parse_message_type("p/T", "float64[] n\n", Dialect::ros1);
-  EXPECT_THROW(Message::of(numbers, std::string("\xff\xff\xff\x1f\0\0\0\0", 8), Dialect::ros1), MalformedError);
+  EXPECT_THROW(Message::of(numbers, std::string("\xff\xff\xff\x1f\0\0\0\0", 8), Dialect::ros1),
+               MalformedError);
 }
 
 TEST(Message, EveryKnownTypeIsWellDefinedInBothDialects) {
   for (const char* name :
-       {"sensor_msgs/PointCloud2", "sensor_msgs/Imu", "sensor_msgs/MagneticField", "sensor_msgs/FluidPressure",
-        "sensor_msgs/CompressedImage", "tf2_msgs/TFMessage", "nav_msgs/Odometry", "geometry_msgs/PoseStamped",
-        "livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg"})
+       {"sensor_msgs/PointCloud2", "sensor_msgs/Imu", "sensor_msgs/MagneticField",
+        "sensor_msgs/FluidPressure", "sensor_msgs/CompressedImage", "tf2_msgs/TFMessage", "nav_msgs/Odometry",
+        "geometry_msgs/PoseStamped", "livox_ros_driver/CustomMsg", "livox_ros_driver2/CustomMsg"})
     for (const Dialect d : {Dialect::ros1, Dialect::ros2}) {
       const MessageType type = parse_message_type(name, known_definition(name, d), d);
       EXPECT_FALSE(type.fields.empty()) << name;

@@ -60,14 +60,17 @@ struct Written {
 inline Written written(Serializer::Kind kind) {
   const replay::Dialect dialect = kind == Serializer::ros1 ? replay::Dialect::ros1 : replay::Dialect::ros2;
   Written w;
-  for (const auto& [topic, type] : {std::pair{"/os/points", "sensor_msgs/PointCloud2"}, {"/os/imu", "sensor_msgs/Imu"}})
+  for (const auto& [topic, type] :
+       {std::pair{"/os/points", "sensor_msgs/PointCloud2"}, {"/os/imu", "sensor_msgs/Imu"}})
     w.topics.push_back({topic, type, replay::known_definition(type, dialect)});
   for (int i = 0; i < kBagScans; ++i)
-    w.messages.push_back({0, stamp_of_scan(i + 1) + 10'000'000,
-                          point_cloud2(kind, stamp_of_scan(i), "os_sensor", kOusterFields, 18, ouster_points(i))});
+    w.messages.push_back(
+        {0, stamp_of_scan(i + 1) + 10'000'000,
+         point_cloud2(kind, stamp_of_scan(i), "os_sensor", kOusterFields, 18, ouster_points(i))});
   for (const ImuLine& l : imu_lines())
     w.messages.push_back({1, l.stamp, imu(kind, l.stamp, "os_sensor", l.force, l.rate)});
-  std::stable_sort(w.messages.begin(), w.messages.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  std::stable_sort(w.messages.begin(), w.messages.end(),
+                   [](const auto& a, const auto& b) { return a.time < b.time; });
   return w;
 }
 

@@ -69,7 +69,8 @@ struct Content {
     for (int i = 0; i < 400; ++i) {
       const std::size_t topic = i % 20 == 0 ? 0 : i % 50 == 7 ? 2 : 1;
       std::string bytes;
-      for (int k = 0; k < (topic == 0 ? 9000 : topic == 1 ? 12 : 0); ++k) bytes += static_cast<char>((i * k) % 251);
+      for (int k = 0; k < (topic == 0 ? 9000 : topic == 1 ? 12 : 0); ++k)
+        bytes += static_cast<char>((i * k) % 251);
       messages.push_back({topic, core::kSecond * 1'600'000'000 + 5'000'000 * i + 1, bytes});
     }
   }
@@ -84,7 +85,8 @@ std::vector<Row> read_by_karst(const std::string& path) {
   const auto bag = open_bag(path);
   std::vector<Row> rows;
   while (const auto m = bag->next())
-    rows.emplace_back(bag->connections()[m->connection].topic, m->time, std::string(m->bytes.begin(), m->bytes.end()));
+    rows.emplace_back(bag->connections()[m->connection].topic, m->time,
+                      std::string(m->bytes.begin(), m->bytes.end()));
   EXPECT_EQ(bag->faults().count(), 0u);
   return rows;
 }
@@ -94,7 +96,8 @@ TEST(RosbagOracle, BagsOfRosbagAreReadWithEachCompression) {
   test::Folder dir;
   using rosbag::compression::CompressionType;
   for (const auto& [compression, name] : {std::pair{CompressionType::Uncompressed, "none.bag"},
-                                          {CompressionType::BZ2, "bz2.bag"}, {CompressionType::LZ4, "lz4.bag"}}) {
+                                          {CompressionType::BZ2, "bz2.bag"},
+                                          {CompressionType::LZ4, "lz4.bag"}}) {
     const std::string path = (dir.path() / name).string();
     rosbag::Bag bag;
     bag.open(path, rosbag::bagmode::Write);
@@ -102,13 +105,15 @@ TEST(RosbagOracle, BagsOfRosbagAreReadWithEachCompression) {
     bag.setChunkThreshold(20'000);
     for (const auto& m : content.messages)
       bag.write(content.topics[m.topic].topic,
-                ros::Time(static_cast<uint32_t>(m.time / core::kSecond), static_cast<uint32_t>(m.time % core::kSecond)),
+                ros::Time(static_cast<uint32_t>(m.time / core::kSecond),
+                          static_cast<uint32_t>(m.time % core::kSecond)),
                 test::RawMessage{content.topics[m.topic].type, content.topics[m.topic].definition, m.bytes});
     bag.close();
     EXPECT_EQ(read_by_karst(path), content.rows()) << name;
     const auto read = open_bag(path);
     for (const Connection& c : read->connections()) {
-      const auto topic = std::find_if(content.topics.begin(), content.topics.end(), [&](const auto& t) { return t.topic == c.topic; });
+      const auto topic = std::find_if(content.topics.begin(), content.topics.end(),
+                                      [&](const auto& t) { return t.topic == c.topic; });
       ASSERT_NE(topic, content.topics.end());
       EXPECT_EQ(c.type, topic->type);
       EXPECT_EQ(c.definition, topic->definition);
@@ -120,7 +125,8 @@ TEST(RosbagOracle, OurWritersBagsAreReadByRosbag) {
   const Content content;
   test::Folder dir;
   for (const Compression c : {Compression::none, Compression::bz2, Compression::lz4}) {
-    const std::string path = dir.write("ours.bag", test::ros1_bag(content.topics, content.messages, {c, true, 30}));
+    const std::string path =
+        dir.write("ours.bag", test::ros1_bag(content.topics, content.messages, {c, true, 30}));
     rosbag::Bag bag(path);
     rosbag::View view(bag);
     std::vector<Row> rows;
