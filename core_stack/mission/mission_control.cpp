@@ -440,8 +440,8 @@ void MissionControl::take_over() {
     flown_path_.begin(here);
     return_home_.set_home(here);
   }
-  if (!sensors_.located_in_first_map())
-    return land_here("the place where the core steers again is not known");
+  if (const std::string lost = "the state estimate is lost: "; !sensors_.located_in_first_map())
+    return land_here(lost + "its place in the first map is not known");
   // In the middle of its landing it may be too near to the ground to fly anywhere first.
   if (resumes_ == Phase::land && lands_at_home()) return enter(Phase::land, "the core steers again");
   if (resumes_ == Phase::home || resumes_ == Phase::land) return return_home_.begin("the core steers again");

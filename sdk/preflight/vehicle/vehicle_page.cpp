@@ -45,7 +45,9 @@ svg { display: block; width: 100%; height: auto; }
 .pad .bar { stroke: #111; stroke-width: .05; }
 .note { font-size: 7.5pt; margin: 0; }
 .sign { margin-top: 3mm; }
-@media print { body { padding: 0; max-width: none; font-size: 7.5pt; line-height: 1.2; }
+@media print { body { padding: 0; max-width: none; font-size: 7.5pt; line-height: 1.15; }
+  h1 { font-size: 12pt; } h2 { margin: 1.5mm 0 .6mm; } .verdict { font-size: 11pt; padding: .6mm 3mm; }
+  ul.boxes li { margin-bottom: .3mm; } .plots { margin-top: 1mm; } .sign { margin-top: 2mm; }
   table, ul { break-inside: avoid; } h2 { break-after: avoid; } }
 )css";
 
