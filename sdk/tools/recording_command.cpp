@@ -90,8 +90,7 @@ void add_recording_command(CLI::App& app) {
       "  karst recording info flight7.bag\n"
       "  karst recording info flight7.mcap --json\n\n"
       "Topics with their types, rates and gaps; the kind of the LiDAR, with the evidence; and a recording "
-      "file for "
-      "karst replay --info (" +
+      "file for karst replay --info (" +
           core::doc_path("docs/replay.md") + ").\nExit code: 0 read, 1 damaged or an error.");
   info->add_option("file", args->file, "bag of ROS 1 (.bag) or ROS 2 (.mcap, .db3)")
       ->type_name(kFile)

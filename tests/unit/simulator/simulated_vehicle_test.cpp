@@ -342,18 +342,32 @@ TEST_F(Simulation, ThePluginIsLoadedByItsOneSymbol) {
       << "errors cross the plugin's border as what they are";
 }
 
-TEST_F(Simulation, WithoutCommandsTheAutopilotLevelsTheVehicleAndComesDown) {
-  // Commands end with the vehicle rising and about to tilt.
-  SimulatedVehicle vehicle(options, setup);
-  Executive executive(1);
-  listener = std::make_unique<Listener>();
-  listener->executive = &executive;
-  vehicle.start(executive, *listener);
-  const double weight_n = vehicle.description().mass_kg * 9.81;
-  executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [&] {
-    const double t = seconds(executive.now());
-    if (t < 2.5) vehicle.command({Vec3(t > 2.3 ? 0.1 : 0, 0, 0), (t < 1 ? 1.15 : 1.01) * weight_n, true});
-  });
+/// A vehicle that rises, begins to roll at `roll_from_s`, and gets no command after 2.5 s.
+class WithoutCommands : public Simulation {
+ protected:
+  WithoutCommands() {
+    listener = std::make_unique<Listener>();
+    listener->executive = &executive;
+    vehicle.start(executive, *listener);
+  }
+  void roll(double from_s, double rate_radps) {
+    executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [this, from_s, rate_radps] {
+      const double t = seconds(executive.now());
+      const double weight_n = vehicle.description().mass_kg * 9.81;
+      Command c;
+      c.rates = {Vec3(t > from_s ? rate_radps : 0, 0, 0), (t < 1 ? 1.15 : 1.01) * weight_n, true};
+      c.state_is_known = true;
+      c.state.velocity_mps = vehicle.velocity_mps();
+      if (t < 2.5) vehicle.command(c);
+    });
+  }
+
+  SimulatedVehicle vehicle{options, setup};
+  Executive executive{1};
+};
+
+TEST_F(WithoutCommands, TheAutopilotLevelsTheVehicleAndComesDown) {
+  roll(2.3, 0.1);
   executive.run_until(from_seconds(2.5), [] { return false; });
   ASSERT_EQ(listener->grounds, "GA");
   const double height_m = vehicle.position().z();
@@ -369,21 +383,8 @@ TEST_F(Simulation, WithoutCommandsTheAutopilotLevelsTheVehicleAndComesDown) {
 }
 
 // The rates of the last command were held for half a second: at 1 rad/s that tipped it over by 30 degrees.
-TEST_F(Simulation, RatesOfTheLastCommandAreNotHeld) {
-  SimulatedVehicle vehicle(options, setup);
-  Executive executive(1);
-  listener = std::make_unique<Listener>();
-  listener->executive = &executive;
-  vehicle.start(executive, *listener);
-  const double weight_n = vehicle.description().mass_kg * 9.81;
-  executive.every("control", 10 * kMillisecond, 10 * kMillisecond, [&] {
-    const double t = seconds(executive.now());
-    Command c;
-    c.rates = {Vec3(t > 2.45 ? 1 : 0, 0, 0), (t < 1 ? 1.15 : 1.01) * weight_n, true};
-    c.state_is_known = true;
-    c.state.velocity_mps = vehicle.velocity_mps();
-    if (t < 2.5) vehicle.command(c);
-  });
+TEST_F(WithoutCommands, RatesOfTheLastCommandAreNotHeld) {
+  roll(2.45, 1);
   double fastest_mps = 0;
   executive.every("watch", 10 * kMillisecond, 10 * kMillisecond,
                   [&] { fastest_mps = std::max(fastest_mps, vehicle.velocity_mps().head<2>().norm()); });
