@@ -25,7 +25,7 @@ class MalformedError : public std::runtime_error {
 /// Takes values one after another. Throws MalformedError where the bytes end too soon.
 class ByteCursor {
  public:
-  explicit ByteCursor(Bytes bytes, std::size_t at = 0) : bytes_(bytes), at_(at) {}
+  explicit ByteCursor(Bytes bytes, std::size_t at = 0) : bytes_(bytes), at_(0) { take_bytes(at); }
 
   std::size_t at() const { return at_; }
   std::size_t left() const { return bytes_.size() - at_; }

@@ -2,6 +2,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "core_stack/common/error.h"
@@ -22,6 +23,8 @@ std::string text_at(sqlite3_stmt* row, int column) {
 class Db3Bag final : public Bag {
  public:
   explicit Db3Bag(const std::string& path) : path_(path), db_(open(path)) {
+    steps_left_ = kMinSteps + kStepsAByte * static_cast<std::int64_t>(std::filesystem::file_size(path));
+    sqlite3_progress_handler(db_.get(), kStepsAtOnce, &Db3Bag::is_too_long, this);
     read_topics();
     // By the index of times where there is one; the messages themselves are not sorted, but their numbers.
     order_ = prepare("SELECT rowid, topic_id, timestamp FROM messages ORDER BY timestamp, rowid");
@@ -56,7 +59,7 @@ class Db3Bag final : public Bag {
       sqlite3_reset(data_.get());
       sqlite3_bind_int64(data_.get(), 1, row);
       if (const int data = sqlite3_step(data_.get()); data != SQLITE_ROW) {
-        faults_.add(place_of(row), std::string("cannot be read: ") + sqlite3_errstr(data));
+        faults_.add(place_of(row), std::string("cannot be read: ") + reason(data));
         continue;
       }
       const auto* bytes = static_cast<const char*>(sqlite3_column_blob(data_.get(), 0));
@@ -126,7 +129,7 @@ class Db3Bag final : public Bag {
   /// damage.
   bool read_in_file_order(int problem) {
     faults_.add(last_row_ == 0 ? "table messages" : place_of(last_row_),
-                std::string(sqlite3_errstr(problem)) +
+                std::string(reason(problem)) +
                     (in_file_order_ ? "" : ": the other messages are read in the order of the file"));
     if (in_file_order_) return false;
     in_file_order_ = true;
@@ -142,7 +145,19 @@ class Db3Bag final : public Bag {
 
   static constexpr std::size_t kMaxRemembered = 10'000'000;
 
+  /// Damaged pages may lead in a circle: reading ends when it has taken more steps of SQLite's machine than
+  /// so many bytes can need. A message takes tens of steps, and has tens of bytes.
+  static constexpr std::int64_t kMinSteps = 1'000'000, kStepsAByte = 100;
+  static constexpr int kStepsAtOnce = 10'000;
+  static int is_too_long(void* bag) {
+    return (static_cast<Db3Bag*>(bag)->steps_left_ -= kStepsAtOnce) < 0 ? 1 : 0;
+  }
+  static const char* reason(int result) {
+    return result == SQLITE_INTERRUPT ? "its pages lead in a circle" : sqlite3_errstr(result);
+  }
+
   std::string path_;
+  std::int64_t steps_left_ = 0;
   Database db_;
   Statement order_{nullptr, &sqlite3_finalize}, data_{nullptr, &sqlite3_finalize};
   std::vector<Connection> connections_;

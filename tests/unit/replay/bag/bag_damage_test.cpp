@@ -68,11 +68,21 @@ TEST(BagDamage, WrongBytesAnywhereAreAnErrorOrLeaveTheRestReadable) {
       std::string bytes = f.bytes;
       const auto at = static_cast<std::size_t>(random.uniform() * static_cast<double>(bytes.size() - 1));
       for (std::size_t k = at; k < std::min(bytes.size(), at + 1 + static_cast<std::size_t>(trial % 8)); ++k)
-        bytes[k] = static_cast<char>(random.uniform() * 256);
+        bytes[k] = static_cast<char>(static_cast<unsigned char>(random.uniform() * 256));
       opened += read_all(dir.write(f.name, bytes)) >= 0;
     }
     // Without a summary, only the first chunk tells the topics.
     EXPECT_GT(opened, f.name == "f.mcap" ? 15 : 30) << f.name;
+  }
+}
+
+// The first read beyond the record, the second never ended: its pages lead in a circle.
+TEST(BagDamage, WhatFuzzersFoundIsNamedAndEnds) {
+  const std::string seeds = std::string(KARST_SOURCE_DIR) + "/tests/fuzz/seeds/";
+  for (const char* seed : {"mcap/index_too_short.mcap", "db3/circle.db3"}) {
+    const auto bag = open_bag(seeds + seed);
+    while (bag->next()) continue;
+    EXPECT_GT(bag->faults().count(), 0u) << seed;
   }
 }
 
