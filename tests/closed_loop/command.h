@@ -58,21 +58,24 @@ inline std::string bytes_of(const std::filesystem::path& file) {
   return all.str();
 }
 
-/// A generated cave, made once for all tests of one program; returns its .info file.
-inline std::string generated_cave(const std::string& preset, int seed) {
+/// A generated cave, made once for all tests of one program; returns its .info file. A cave with settings
+/// of its own, `--set KEY=VALUE ...`, needs a name.
+inline std::string generated_cave(const std::string& preset, int seed, const std::string& settings = "",
+                                  std::string name = "") {
+  if (name.empty()) name = preset + std::to_string(seed);
   const std::filesystem::path dir = std::filesystem::path(KARST_BINARY_DIR) / "test_runs" / "caves";
-  const std::string stem = (dir / (preset + std::to_string(seed))).string();
+  const std::string stem = (dir / name).string();
   if (!std::filesystem::exists(stem + ".info")) {
     // Several tests may want it at once: each makes its own, and the rename decides.
     const std::string own = stem + "." + std::to_string(getpid());
     std::filesystem::create_directories(own);
     const Output made = run_karst("cave generate --preset " + preset + " --seed " + std::to_string(seed) +
-                                  " --out " + own + "/" + preset + std::to_string(seed));
+                                  " --out " + own + "/" + name + " " + settings);
     EXPECT_EQ(made.code, 0) << made.text;
     for (const auto& entry : std::filesystem::directory_iterator(own))
       if (entry.path().extension() != ".info")
         std::filesystem::rename(entry.path(), dir / entry.path().filename());
-    std::filesystem::rename(own + "/" + preset + std::to_string(seed) + ".info", stem + ".info");
+    std::filesystem::rename(own + "/" + name + ".info", stem + ".info");
     std::filesystem::remove_all(own);
   }
   return stem + ".info";
