@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <mutex>
@@ -25,7 +26,8 @@ void print_text(const std::string& text) {
 /// As wide as the figures, to keep what follows in its place.
 std::string battery_text(const std::optional<core::BatteryStatus>& battery) {
   if (!battery) return "unknown           ";
-  const int left_s = static_cast<int>(battery->seconds_left);
+  constexpr double kMost_s = 100 * 60 - 1;  // on the ground it may be without end
+  const int left_s = static_cast<int>(std::clamp(battery->seconds_left, 0.0, kMost_s));
   return core::format_text("%3.0f %% (%2d:%02d left)", 100 * battery->fraction_left, left_s / 60,
                            left_s % 60);
 }

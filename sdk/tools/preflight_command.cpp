@@ -3,11 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/info_reader.h"
 #include "core_stack/common/install_location.h"
 #include "core_stack/common/shell_word.h"
 #include "core_stack/vehicle/load_vehicle.h"
@@ -35,6 +38,7 @@ constexpr const char *kVehicleKey = "simulator.vehicle", *kBatteryKey = "simulat
 
 struct PreflightArguments {
   flight::MissionOverrides overrides;
+  std::string mission_file;  // "": overrides.cave is checked
   std::string vehicle, battery, page;
   preflight::LookOptions look;
   MeshOptions mesh;
@@ -64,12 +68,20 @@ flight::Mission mission_of(const PreflightArguments& args) {
   add_setting(overrides, "--vehicle", kVehicleKey, args.vehicle);
   add_setting(overrides, "--battery", kBatteryKey, args.battery);
   for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
-  return flight::read_mission("", overrides);
+  return flight::read_mission(args.mission_file, overrides);
+}
+
+/// A file of a mission, and not of a cave, has one of these sections.
+bool is_mission_file(const std::string& path) {
+  if (!path.ends_with(".info") || !std::filesystem::is_regular_file(path)) return false;
+  const auto tree = core::read_including_info(path);
+  return tree.count("cave") + tree.count("vehicle") + tree.count("policy") + tree.count("mission") > 0;
 }
 
 /// Flies what was judged: the policy and its parameters by name, so that nothing is selected again.
 std::string fly_command(const PreflightArguments& args, const preflight::PolicyFacts& policy) {
   std::string command = "karst fly";
+  if (!args.mission_file.empty()) command += " " + core::shell_word(args.mission_file);
   const auto add = [&command](const std::string& option, const std::string& value) {
     command += core::shell_option(option, value);
   };
@@ -88,13 +100,11 @@ std::string fly_command(const PreflightArguments& args, const preflight::PolicyF
   return command;
 }
 
-/// `--vehicle` names a vehicle plugin; `named_policy`: not the default of a cave's preflight.
-int run_of_vehicle(const PreflightArguments& args, bool named_policy) {
+/// `--vehicle` or the mission names a vehicle plugin.
+int run_of_vehicle(const PreflightArguments& args) {
   VehiclePreflightArguments real = args.real;
-  real.mission_file = args.overrides.cave;
+  real.mission_file = args.mission_file;
   real.overrides = args.overrides;
-  real.overrides.cave.clear();
-  if (!named_policy) real.overrides.policy.clear();
   add_setting(real.overrides, "--vehicle", "vehicle", args.vehicle);
   real.plugins = args.look.plugins;
   real.page = args.page;
@@ -119,7 +129,7 @@ void check_vehicle(const std::string& name) {
 }
 
 int run(const PreflightArguments& args) {
-  if (args.overrides.cave.empty())
+  if (args.overrides.cave.empty() && args.mission_file.empty())
     throw InputError("karst preflight", "",
                      "argument cave is missing, or --vehicle with the name of a vehicle plugin; "
                      "`karst preflight --help` says more");
@@ -180,7 +190,7 @@ void add_preflight_command(CLI::App& app) {
   preflight_app
       ->add_option(
           "cave", args->overrides.cave,
-          "cave .info file or mesh (STL, PLY, OBJ, DAE); with the --vehicle of a plugin: a mission file")
+          "cave .info file or mesh (STL, PLY, OBJ, DAE), or a mission file, which names cave or vehicle")
       ->type_name(kFile)
       ->check(not_empty());
   preflight_app
@@ -226,10 +236,17 @@ void add_preflight_command(CLI::App& app) {
   preflight_app->callback([args, preflight_app] {
     host::take_policy_file(args->overrides.policy, args->look.plugins);
     check_vehicle(args->vehicle);
-    const bool named_policy = preflight_app->count("--policy") > 0;
-    const bool of_cave =
-        !is_vehicle(args->vehicle) && (args->vehicle.empty() || !args->overrides.cave.empty());
-    const int code = of_cave ? run(*args) : run_of_vehicle(*args, named_policy);
+    flight::MissionOverrides& overrides = args->overrides;
+    const bool plugin_named = is_vehicle(args->vehicle);
+    if (plugin_named || is_mission_file(overrides.cave))
+      args->mission_file = std::exchange(overrides.cave, "");
+    // A mission has its own policy.
+    if ((plugin_named || !args->mission_file.empty()) && preflight_app->count("--policy") == 0)
+      overrides.policy.clear();
+    const bool listens =
+        plugin_named ||
+        (!args->mission_file.empty() && flight::named_vehicle(args->mission_file, overrides) != "simulator");
+    const int code = listens ? run_of_vehicle(*args) : run(*args);
     if (code != 0) throw CLI::RuntimeError(code);
   });
 }

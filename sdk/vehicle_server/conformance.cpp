@@ -42,7 +42,6 @@ std::vector<const M*> all_of(const std::vector<Heard>& heard) {
   return all;
 }
 TimeNs stamp_of(const socket::Depth& m) { return m.image.stamp; }
-TimeNs stamp_of(const socket::Objects& m) { return m.look.stamp; }
 template <class M>
 requires requires(const M& m) { m.stamp; }
 TimeNs stamp_of(const M& m) { return m.stamp; }

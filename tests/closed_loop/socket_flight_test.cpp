@@ -223,8 +223,7 @@ class CoreDies : public ::testing::TestWithParam<const char*> {};
 TEST_P(CoreDies, TheVehicleComesDown) {
   const std::string phase = GetParam();
   const fs::path folder = fresh_folder("socket_core_dies_" + phase), run = folder / "run";
-  const std::string file = mission(folder, smooth_cave(), kShort),
-                    address = address_of("c" + phase);
+  const std::string file = mission(folder, smooth_cave(), kShort), address = address_of("c" + phase);
   Background server(serve(file, address, folder) + " --once", folder / "serve.log");
   {
     Background flight(kKarst + "fly --real-time " + file + by_socket(address) + "--out " + run.string() +

@@ -384,7 +384,9 @@ TEST_F(MissionControlTest, WaitsForThePilotAndTheTimeAllowedCountsFromThen) {
   const MissionResult result = fly([&](MissionControl& mission) {
     if (executive.now() == 700 * kSecond)
       mission.on_authority(executive.now(), Authority::core, "handed over");
-    if (executive.now() < 700 * kSecond) EXPECT_EQ(mission.phase(), Phase::standby);
+    if (executive.now() < 700 * kSecond) {
+      EXPECT_EQ(mission.phase(), Phase::standby);
+    }
   });
   EXPECT_EQ(result.outcome, MissionOutcome::landed);
   EXPECT_EQ(phases(), kWholeMission);
@@ -548,7 +550,9 @@ TEST_F(MissionControlTest, WhileThePilotFliesBeforeTheFirstHandOverTheCommandIsA
 TEST_F(MissionControlTest, DoesNotTakeOffBeforeTheVehiclesChecksHold) {
   vehicle.checked = {{"COM_OF_LOSS_T", "at most 1 s", "5 s", false}, {"heartbeat", "comes", "comes", true}};
   fly([&](MissionControl& mission) {
-    if (executive.now() < 20 * kSecond) EXPECT_EQ(mission.phase(), Phase::standby);
+    if (executive.now() < 20 * kSecond) {
+      EXPECT_EQ(mission.phase(), Phase::standby);
+    }
     if (executive.now() >= 20 * kSecond) vehicle.checked.front().holds = true;
   });
   EXPECT_EQ(phases(), kWholeMission);

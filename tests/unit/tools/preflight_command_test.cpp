@@ -170,6 +170,26 @@ TEST(PreflightCommand, EndsWithTheCommandThatFliesWhatWasJudged) {
   EXPECT_FALSE(contains(refused.text, "karst fly --cave")) << refused.text;
 }
 
+TEST(PreflightCommand, AMissionFileNamesCavePolicyAndTime) {
+  const std::string mission = (own_folder() / "mission.info").string();
+  std::ofstream(mission) << "cave { file \"" << rooms() << "\" start \"" << kStart << "\" }\n"
+                         << "mission { max_flight_time \"90 s\" }\npolicy { name lateral_frontier }\n";
+  const Said said = run({mission, "--json"});
+  EXPECT_EQ(said.code, 0) << said.text;
+  const nlohmann::json j = json_of(said);
+  EXPECT_EQ(j["policy"]["name"], "lateral_frontier");
+  EXPECT_LE(j["time"]["return_s"], 90);
+  EXPECT_EQ(json_of(run({mission, "--policy", "highest_frontier", "--json"}))["policy"]["name"],
+            "highest_frontier");
+  EXPECT_TRUE(contains(run({mission}).text, "karst fly " + mission + " --policy lateral_frontier"));
+}
+
+TEST(PreflightCommand, AMissionFileNamesTheVehicleThatIsListenedTo) {
+  const std::string mission = (own_folder() / "mission.info").string();
+  std::ofstream(mission) << "vehicle no_such_vehicle\n";
+  EXPECT_TRUE(contains(error_of({mission}), "no_such_vehicle")) << error_of({mission});
+}
+
 TEST(PreflightCommand, ABatteryThatIsTooSmallIsNoGo) {
   const std::string cave = rooms();
   const Said said = run({cave, "--start", kStart, "--policy", "nearest_frontier", "--battery", "20 s"});
