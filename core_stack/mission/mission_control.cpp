@@ -285,7 +285,7 @@ void MissionControl::fly_phase() {
         return endurance_.begin(now());
       }
       if (now() - phases_.since() < kSettling || (team_ && !team_->sharing.airspace_clear())) break;
-      if (!may_fly()) return endurance_.begin(now());
+      if (!checks_hold()) return endurance_.begin(now());
       take_off_.begin();
       enter(Phase::takeoff, "");
       break;
@@ -316,7 +316,7 @@ void MissionControl::fly_phase() {
 }
 
 /// Whether the vehicle's own checks hold. What does not is recorded once.
-bool MissionControl::may_fly() {
+bool MissionControl::checks_hold() {
   std::string why_not;
   for (const VehicleCheck& check : vehicle_.checks())
     if (!check.holds)
@@ -438,7 +438,7 @@ void MissionControl::take_over() {
   if (!flown_path_.begun()) {  // the pilot has taken off
     const Vec3 here = onboard_.flight.reference().position;
     flown_path_.begin(here);
-    return_home_.set_home(here);
+    return_home_.set_home(home_after_hand_over(here));
   }
   if (const std::string lost = "the state estimate is lost: "; !sensors_.located_in_first_map())
     return land_here(lost + "its place in the first map is not known");
@@ -447,6 +447,14 @@ void MissionControl::take_over() {
   if (resumes_ == Phase::home || resumes_ == Phase::land) return return_home_.begin("the core steers again");
   if (resumes_ == Phase::look) onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
   enter(resumes_, "the core steers again");
+}
+
+/// Where the pilot handed over; or above the start, if that is outside of the region or too near to its
+/// border.
+Vec3 MissionControl::home_after_hand_over(const Vec3& here) const {
+  const CoreOptions& o = onboard_.options;
+  if (!o.region || o.region->depth_m(here) >= min_hover_depth_m(o)) return here;
+  return onboard_.vehicle.T_world_start.position + Vec3(0, 0, o.mission.takeoff_height_m);
 }
 
 bool MissionControl::lands_at_home() const {

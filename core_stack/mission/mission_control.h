@@ -118,8 +118,9 @@ class MissionControl final : public VehicleSink {
   void land_here(const std::string& reason);
   void land();
   bool found_again() const;
+  Vec3 home_after_hand_over(const Vec3& here) const;
   bool lands_at_home() const;
-  bool may_fly();
+  bool checks_hold();
   std::string waits_for() const;
   void let_go(const std::string& reason);
   void wait_on_ground();

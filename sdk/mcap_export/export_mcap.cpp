@@ -65,6 +65,9 @@ McapExport export_mcap(const fs::path& directory, const fs::path& file, std::opt
   McapWriter writer(part.stream(), {.profile = "ros2", .library = "karst " + version});
   McapExport out;
   out.topics = write_topics(writer, std::move(topics));
+  // The profiles of quality of service are numbers, as Humble writes them. A later rosbag2 expects words,
+  // unless the file says so.
+  writer.metadata("rosbag2", {{"ROS_DISTRO", "humble"}});
   writer.metadata("karst", made_by(run, clock, version));
   writer.finish();
   part.commit();

@@ -111,10 +111,12 @@ void check_region(const std::string& source, const CoreOptions& o, const Vehicle
   const double top_m = o.mission.takeoff_height_m;
   for (double up_m = kStep_m; up_m < top_m; up_m += kStep_m)
     require(start + Vec3(0, 0, up_m), vehicle.radius_m, "the take-off");
-  // A path begins and ends there, with its clearance and the margin. A cell may reach half its diagonal
-  // beyond.
-  const double hover_m = o.planning.clearance_m + o.region->limits().margin_m + 0.87 * o.map.resolution_m;
-  require(start + Vec3(0, 0, top_m), hover_m, "the first hover");
+  require(start + Vec3(0, 0, top_m), min_hover_depth_m(o), "the first hover");
+}
+
+/// Its clearance and the margin. A cell may reach half its diagonal beyond.
+double min_hover_depth_m(const CoreOptions& o) {
+  return o.planning.clearance_m + o.region->limits().margin_m + 0.87 * o.map.resolution_m;
 }
 
 }  // namespace karst::core

@@ -69,4 +69,7 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle);
 /// or where it hovers after take-off.
 void check_region(const std::string& source, const CoreOptions& o, const VehicleDescription& vehicle);
 
+/// How deep inside the region a place must lie so that a path can begin and end there.
+double min_hover_depth_m(const CoreOptions& o);
+
 }  // namespace karst::core

@@ -76,6 +76,9 @@ for await (const message of reader.readMessages()) {
 check(BigInt(count) === reader.statistics.messageCount, 'count of messages');
 for (const [id, n] of reader.statistics.channelMessageCounts)
   check(BigInt(topics.get(reader.channelsById.get(id).topic).messages.length) === n, 'messages of channel ' + id);
+let distribution;
+for await (const record of reader.readMetadata({name: 'rosbag2'})) distribution = record.metadata.get('ROS_DISTRO');
+check(distribution === 'humble', 'whose numbers the quality of service has');
 let metadata;
 for await (const record of reader.readMetadata({name: 'karst'})) metadata = record.metadata;
 check(metadata?.get('exported_by')?.startsWith('karst '), 'what made it');

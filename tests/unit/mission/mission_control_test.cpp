@@ -694,5 +694,27 @@ TEST_F(MissionControlTest, HandedOverOutsideItsRegionItFliesBackInsideAndHome) {
   EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
 }
 
+// As it was: home was where it was handed over, and it landed there, outside.
+TEST_F(MissionControlTest, ThatAPilotTookOffAndHandedOverOutsideItsRegionFliesHomeToItsStart) {
+  options.region = part_of_the_corridor();
+  vehicle.steered_by(Authority::pilot);
+  bool over = false;
+  const MissionResult result = fly([&](MissionControl& mission) {
+    if (over || executive.now() < 3 * kSecond) return;
+    const bool low = vehicle.pose().position.z() < kStart.z() + 1;
+    const bool flies_on = vehicle.pose().position.x() < 11;
+    const double y = vehicle.pose().position.y();
+    vehicle.pilot_rates = hold(vehicle, Vec3(flies_on && !low ? 1 : 0, -0.3 * y, low ? 0.5 : 0));
+    if (flies_on || vehicle.velocity_mps().norm() > 0.1) return;
+    over = true;
+    vehicle.pilot_rates.reset();
+    mission.on_authority(executive.now(), Authority::core, "mode offboard");
+  });
+  EXPECT_TRUE(over);
+  EXPECT_EQ(result.outcome, MissionOutcome::landed) << result.reason;
+  EXPECT_EQ(homing_reason(), "the vehicle is outside region.keep_in");
+  EXPECT_NEAR((vehicle.pose().position - kStart).norm(), 0, 0.3);
+}
+
 }  // namespace
 }  // namespace karst::core
