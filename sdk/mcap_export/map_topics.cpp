@@ -3,6 +3,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/mapping/octomap/octomap_io.h"
+#include "sdk/mcap_export/flight_messages.h"
 #include "sdk/mcap_export/flight_topics.h"
 #include "sdk/mcap_export/point_cloud.h"
 
@@ -11,25 +12,6 @@ namespace {
 
 using evaluation::OccupiedSpan;
 using evaluation::RunRecord;
-using ros::PointType;
-
-constexpr double kStep_s = 1;  // of /map/new
-
-ros::PointCloud2 cloud_at(double t_s, const FlightClock& clock) {
-  return ros::empty_cloud({clock.stamp(t_s), kMapFrame}, {{"x", PointType::float32},
-                                                          {"y", PointType::float32},
-                                                          {"z", PointType::float32},
-                                                          {"since", PointType::float32}});
-}
-
-/// The centre of a cell, and the flight time from which it has been occupied.
-void append_cell(ros::PointCloud2& cloud, const core::CellKey& key, double resolution_m, double since_s) {
-  for (const std::int32_t k : {key.x, key.y, key.z})
-    ros::append(cloud, static_cast<float>((k + 0.5) * resolution_m));
-  ros::append(cloud, static_cast<float>(since_s));
-}
-
-double seconds_of(std::int32_t ms) { return ms / 1000.0; }
 
 /// When a cell of the final map became occupied for good; NaN if the growth does not tell.
 double since_s(const RunRecord& run, const core::CellKey& key) {
@@ -37,7 +19,7 @@ double since_s(const RunRecord& run, const core::CellKey& key) {
       std::upper_bound(run.growth.begin(), run.growth.end(), key,
                        [](const core::CellKey& k, const OccupiedSpan& s) { return k < s.key; });
   if (after == run.growth.begin() || (after - 1)->key != key) return std::nan("");
-  return seconds_of((after - 1)->from_ms);
+  return seconds_of_ms((after - 1)->from_ms);
 }
 
 using StoredMap = std::shared_ptr<const core::VoxelMap>;
@@ -56,7 +38,7 @@ StoredMap stored_map(const RunRecord& run, std::vector<std::string>& problems) {
 
 ros::PointCloud2 cloud_of(const core::VoxelMap& map, const RunRecord& run, const FlightClock& clock,
                           double t_s) {
-  ros::PointCloud2 cloud = cloud_at(t_s, clock);
+  ros::PointCloud2 cloud = cells_cloud(t_s, clock);
   map.for_each_known([&](const core::CellKey& key, core::Cell cell, float) {
     if (cell == core::Cell::occupied) append_cell(cloud, key, map.resolution_m(), since_s(run, key));
   });
@@ -64,10 +46,10 @@ ros::PointCloud2 cloud_of(const core::VoxelMap& map, const RunRecord& run, const
 }
 
 ros::PointCloud2 grown_until(const RunRecord& run, const FlightClock& clock, double t_s) {
-  ros::PointCloud2 cloud = cloud_at(t_s, clock);
+  ros::PointCloud2 cloud = cells_cloud(t_s, clock);
   for (const OccupiedSpan& s : run.growth)
-    if (seconds_of(s.from_ms) <= t_s && seconds_of(s.until_ms) > t_s)
-      append_cell(cloud, s.key, run.map_resolution_m(), seconds_of(s.from_ms));
+    if (seconds_of_ms(s.from_ms) <= t_s && seconds_of_ms(s.until_ms) > t_s)
+      append_cell(cloud, s.key, run.map_resolution_m(), seconds_of_ms(s.from_ms));
   return ros::finished(std::move(cloud));
 }
 
@@ -92,9 +74,7 @@ Topic new_cells(const RunRecord& run, const FlightClock& clock) {
   for (const OccupiedSpan& s : run.growth) spans->push_back(&s);
   std::stable_sort(spans->begin(), spans->end(),
                    [](const auto* a, const auto* b) { return a->from_ms < b->from_ms; });
-  const auto step_of = [](const OccupiedSpan* s) {
-    return static_cast<std::int64_t>(std::ceil(seconds_of(s->from_ms) / kStep_s));
-  };
+  const auto step_of = [](const OccupiedSpan* s) { return new_cells_step(s->from_ms); };
   std::vector<std::size_t> begins;  // of the steps, in the spans
   for (std::size_t i = 0; i < spans->size(); ++i)
     if (i == 0 || step_of((*spans)[i]) != step_of((*spans)[i - 1])) begins.push_back(i);
@@ -102,10 +82,10 @@ Topic new_cells(const RunRecord& run, const FlightClock& clock) {
   begins.push_back(spans->size());
   return topic_of<ros::PointCloud2>(
       "/map/new", clock, steps, [&run, clock, spans, begins, step_of](std::size_t i) {
-        const double t_s = static_cast<double>(step_of((*spans)[begins[i]])) * kStep_s;
-        ros::PointCloud2 cloud = cloud_at(t_s, clock);
+        const double t_s = static_cast<double>(step_of((*spans)[begins[i]])) * kNewCellsStep_s;
+        ros::PointCloud2 cloud = cells_cloud(t_s, clock);
         for (std::size_t k = begins[i]; k < begins[i + 1]; ++k)
-          append_cell(cloud, (*spans)[k]->key, run.map_resolution_m(), seconds_of((*spans)[k]->from_ms));
+          append_cell(cloud, (*spans)[k]->key, run.map_resolution_m(), seconds_of_ms((*spans)[k]->from_ms));
         return std::pair(t_s, ros::finished(std::move(cloud)));
       });
 }
