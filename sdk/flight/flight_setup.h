@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/mission/recording/record_listener.h"
 #include "core_stack/team/communication/mission_key.h"
 #include "plugins/simulator/simulated_world.h"
 #include "sdk/flight/finish_run.h"
@@ -24,6 +25,7 @@ struct FlightRequest {
   OldRun old_run = OldRun::kept;
   bool record_requests = false;
   bool notes = true, status_line = true;  // on standard error
+  core::RecordListener* listener = nullptr;  // to the record of a single vehicle; outlives the flight
 };
 
 inline bool is_team(const Mission& mission) { return mission.core.team.robots > 1; }

@@ -50,6 +50,8 @@ void refuse_for_team(const FlightRequest& request) {
                            "a team flies in lockstep only: its vehicles share a world");
   if (request.record_requests)
     throw core::InputError("karst fly", "--record-requests", "of a team no requests are recorded");
+  if (request.listener)
+    throw core::InputError("karst fly", "--live", "a team cannot be followed: fly a single vehicle");
 }
 
 /// Warns if the radio's range differs from the range the robots assume when they choose landing sites.
@@ -135,6 +137,7 @@ void MissionFlight::prepare(const std::atomic<bool>& interrupted) {
     r.recorders.push_back(std::make_unique<core::Recorder>(own, request_.clock == core::Clock::real_time
                                                                     ? core::Durability::survives_a_power_cut
                                                                     : core::Durability::survives_a_crash));
+    r.recorders.back()->set_listener(request_.listener);
   }
   r.vehicles = make_vehicles(mission_, members_, run_dir, request_.clock);
   if (mission_.record.scans)

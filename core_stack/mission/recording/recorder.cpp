@@ -43,32 +43,38 @@ Recorder::Recorder(const std::filesystem::path& run_dir, Durability durability) 
     frames_.open(run_dir / kFramesName, disk_.get());
     unsurveyed_.open(run_dir / kUnsurveyedName, disk_.get());
   }
-  telemetry_ << "t_s,phase,x,y,z,vx,vy,vz,heading_rad,ref_x,ref_y,ref_z,battery_fraction,seconds_left,"
-                "explored_m3,home_distance_m\n";
-  localization_
-      << "stamp_s,used_s,accepted,free_directions,edges,planes,residual_m,position_sigma_m,heading_sigma_rad,"
-         "believed,problem\n";
+  telemetry_ << kTelemetryColumns << '\n';
+  localization_ << kLocalizationColumns << '\n';
   decisions_ << "t_s,decide_ms,plan_ms\n";
 }
 
-void Recorder::write(TimeNs t, const event::Event& event) { events_ << event::line_of(t, event) << '\n'; }
+void Recorder::put(RecordFile& file, RecordPart part, std::string_view bytes) {
+  file << bytes;
+  if (listener_) listener_->on_record(part, bytes);
+}
+
+void Recorder::write(TimeNs t, const event::Event& event) {
+  put(events_, RecordPart::events, event::line_of(t, event) + '\n');
+}
 
 void Recorder::write(TimeNs t, const char* kind, const std::string& fields) {
-  events_ << event::line_of(t, kind, fields) << '\n';
+  put(events_, RecordPart::events, event::line_of(t, kind, fields) + '\n');
 }
 
 void Recorder::pose(const State& s) {
   const Quat& q = s.orientation;
-  trajectory_ << formatted("%.4f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", seconds(s.stamp), s.position.x(),
-                           s.position.y(), s.position.z(), q.x(), q.y(), q.z(), q.w());
+  put(trajectory_, RecordPart::trajectory,
+      formatted("%.4f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", seconds(s.stamp), s.position.x(),
+                s.position.y(), s.position.z(), q.x(), q.y(), q.z(), q.w()));
 }
 
 void Recorder::telemetry(const Telemetry& r) {
   const Vec3 &p = r.state.position, &v = r.state.velocity_mps;
-  telemetry_ << formatted("%.2f,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.4f,%.4f,%.4f,%.5f,%.1f,%.3f,%.2f\n",
-                          seconds(r.stamp), name_of(r.phase), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
-                          heading_of(r.state.orientation), r.reference.x(), r.reference.y(), r.reference.z(),
-                          r.battery_fraction, r.battery_seconds_left, r.explored_m3, r.home_distance_m);
+  put(telemetry_, RecordPart::telemetry,
+      formatted("%.2f,%s,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.5f,%.4f,%.4f,%.4f,%.5f,%.1f,%.3f,%.2f\n",
+                seconds(r.stamp), name_of(r.phase), p.x(), p.y(), p.z(), v.x(), v.y(), v.z(),
+                heading_of(r.state.orientation), r.reference.x(), r.reference.y(), r.reference.z(),
+                r.battery_fraction, r.battery_seconds_left, r.explored_m3, r.home_distance_m));
 }
 
 void Recorder::unsurveyed(TimeNs t, double volume_m3) {
@@ -82,10 +88,11 @@ void Recorder::unsurveyed(TimeNs t, double volume_m3) {
 
 void Recorder::located(const Located& r) {
   const LoamPose& p = r.pose;
-  localization_ << formatted("%.3f,%.3f,%d,%d,%d,%d,%.4f,%.4f,%.5f,%s,", seconds(p.stamp), seconds(r.used_at),
-                             r.accepted, p.free_directions, p.edges, p.planes, p.rms_residual_m,
-                             r.position_sigma_m, r.heading_sigma_rad, name_of(r.believed))
-                << p.problem << '\n';
+  put(localization_, RecordPart::localization,
+      formatted("%.3f,%.3f,%d,%d,%d,%d,%.4f,%.4f,%.5f,%s,", seconds(p.stamp), seconds(r.used_at), r.accepted,
+                p.free_directions, p.edges, p.planes, p.rms_residual_m, r.position_sigma_m,
+                r.heading_sigma_rad, name_of(r.believed)) +
+          p.problem + '\n');
 }
 
 void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
@@ -95,7 +102,8 @@ void Recorder::map_changes(TimeNs t, std::span<const CellChange> changes) {
   for (const CellChange& c : changes) {
     if (c.before != Cell::occupied && c.after != Cell::occupied) continue;
     const std::array<std::int32_t, 4> record{c.key.x, c.key.y, c.key.z, c.after == Cell::occupied ? ms : -ms};
-    growth_ << std::string_view(reinterpret_cast<const char*>(record.data()), sizeof record);
+    put(growth_, RecordPart::map_growth,
+        std::string_view(reinterpret_cast<const char*>(record.data()), sizeof record));
   }
 }
 
@@ -140,6 +148,7 @@ bool Recorder::flush() {
 bool Recorder::close() {
   bool good = true;
   for (RecordFile* f : files()) good = f->close() && good;
+  if (listener_) listener_->on_close();
   if (!disk_) return good;
   good = disk_->finish() && good;
   std::error_code ignored;

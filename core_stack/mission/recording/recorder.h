@@ -12,6 +12,7 @@
 #include "core_stack/mapping/occupancy/voxel_map.h"
 #include "core_stack/mission/recording/disk_writer.h"
 #include "core_stack/mission/recording/record_file.h"
+#include "core_stack/mission/recording/record_listener.h"
 #include "core_stack/mission/recording/run_event.h"
 #include "core_stack/vehicle/rgb_camera_model.h"
 
@@ -44,9 +45,20 @@ enum class Durability { survives_a_crash, survives_a_power_cut };
 
 class Recorder {
  public:
+  /// The first lines of telemetry.csv and localization.csv.
+  static constexpr std::string_view kTelemetryColumns =
+      "t_s,phase,x,y,z,vx,vy,vz,heading_rad,ref_x,ref_y,ref_z,battery_fraction,seconds_left,explored_m3,"
+      "home_distance_m";
+  static constexpr std::string_view kLocalizationColumns =
+      "stamp_s,used_s,accepted,free_directions,edges,planes,residual_m,position_sigma_m,heading_sigma_rad,"
+      "believed,problem";
+
   /// Creates the directory; throws InputError if it cannot be written or holds another run's files.
   explicit Recorder(const std::filesystem::path& run_dir,
                     Durability durability = Durability::survives_a_crash);
+
+  /// From now on `listener`, which outlives the recorder, gets what is recorded, without the columns' names.
+  void set_listener(RecordListener* listener) { listener_ = listener; }
 
   /// A line of events.jsonl.
   void write(TimeNs t, const event::Event& event);
@@ -78,12 +90,14 @@ class Recorder {
 
  private:
   std::array<RecordFile*, 9> files();
+  void put(RecordFile& file, RecordPart part, std::string_view bytes);
 
   std::filesystem::path directory_;
   std::unique_ptr<DiskWriter> disk_;  // to survive a power cut
   RecordFile events_, trajectory_, telemetry_, localization_, growth_, cells_, decisions_, frames_,
       unsurveyed_;
   std::string last_unsurveyed_;  // as written
+  RecordListener* listener_ = nullptr;
 };
 
 }  // namespace karst::core

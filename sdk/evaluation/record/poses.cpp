@@ -28,7 +28,21 @@ bool parse_line(const std::string& line, std::array<double, 8>& v) {
   return at == end;
 }
 
+bool is_unit(const std::array<double, 8>& v) {
+  return std::abs(core::Quat(v[7], v[4], v[5], v[6]).norm() - 1.0) <= 0.01;
+}
+
+StampedPose pose_of(const std::array<double, 8>& v) {
+  return {v[0], {core::Vec3(v[1], v[2], v[3]), core::Quat(v[7], v[4], v[5], v[6]).normalized()}};
+}
+
 }  // namespace
+
+std::optional<StampedPose> pose_of_line(const std::string& line) {
+  std::array<double, 8> v;
+  if (!parse_line(line, v) || !is_unit(v)) return std::nullopt;
+  return pose_of(v);
+}
 
 std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector<std::string>& problems) {
   std::vector<StampedPose> poses;
@@ -41,8 +55,7 @@ std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector
       bad.add(i + 1, "is not eight numbers");
       continue;
     }
-    const core::Quat q(v[7], v[4], v[5], v[6]);
-    if (std::abs(q.norm() - 1.0) > 0.01) {
+    if (!is_unit(v)) {
       bad.add(i + 1, "its quaternion is not of unit length");
       continue;
     }
@@ -50,7 +63,7 @@ std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector
       bad.add(i + 1, "goes back in time");
       continue;
     }
-    poses.push_back({v[0], {core::Vec3(v[1], v[2], v[3]), q.normalized()}});
+    poses.push_back(pose_of(v));
   }
   bad.report(problems);
   return poses;

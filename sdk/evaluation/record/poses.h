@@ -1,6 +1,7 @@
 // Time-stamped poses in the TUM format: lines "t x y z qx qy qz qw", in seconds and metres.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct StampedPose {
 
 /// In order of time. Lines that start with # are comments; malformed lines are left out and reported.
 std::vector<StampedPose> read_tum(const std::filesystem::path& file, std::vector<std::string>& problems);
+
+/// A line of such a file; none if it is malformed.
+std::optional<StampedPose> pose_of_line(const std::string& line);
 
 /// See core::pose_on_track; `poses` must not be empty.
 core::Pose pose_at(const std::vector<StampedPose>& poses, double t_s);
