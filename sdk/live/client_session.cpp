@@ -67,6 +67,12 @@ void ClientSession::publish(const LiveMessage& message) {
     outbox_.put(message, retained_.topics()[message.topic].keeping);
 }
 
+std::uint64_t ClientSession::dropped() const {
+  std::uint64_t all = all_dropped_;
+  for (const auto& [topic, count] : outbox_.dropped()) all += count;
+  return all;
+}
+
 std::optional<std::string> ClientSession::dropped_text() {
   if (!std::exchange(tells_dropped_, false)) return std::nullopt;
   std::string list;

@@ -47,7 +47,7 @@ class ClientSession {
   bool idle() const { return texts_.empty() && outbox_.empty(); }
   std::size_t subscriptions() const { return subscriptions_.size(); }
   std::size_t waiting_bytes() const { return outbox_.bytes(); }
-  std::uint64_t dropped() const { return all_dropped_; }
+  std::uint64_t dropped() const;  // messages so far
 
  private:
   void take(const Subscribe& request);
@@ -63,7 +63,7 @@ class ClientSession {
   Outbox outbox_;
   std::optional<std::uint64_t> time_ns_;
   bool tells_dropped_ = false;
-  std::uint64_t all_dropped_ = 0;
+  std::uint64_t all_dropped_ = 0;  // and told
   int refused_ = 0;
   std::string complaint_;
 };

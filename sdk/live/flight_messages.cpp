@@ -97,15 +97,15 @@ const std::vector<LiveTopic>& flight_topics() {
     std::vector<LiveTopic> all = {
         {kTf, ros::schema_of<ros::TFMessage>(), Keeping::none},
         {kOdometry, ros::schema_of<ros::Odometry>(), Keeping::none},
-        {kPath, ros::schema_of<ros::Path>(), Keeping::latest},
-        {kMap, ros::schema_of<ros::PointCloud2>(), Keeping::latest},
+        {kPath, ros::schema_of<ros::Path>(), Keeping::whole},
+        {kMap, ros::schema_of<ros::PointCloud2>(), Keeping::whole},
         {kNewCells, ros::schema_of<ros::PointCloud2>(), Keeping::since_latest_map},
-        {kBattery, ros::schema_of<ros::BatteryState>(), Keeping::none}};
+        {kBattery, ros::schema_of<ros::BatteryState>(), Keeping::last}};
     const auto add = [&]<class Messages>(const Messages&) {
       const bool log = std::is_same_v<Messages, mcap::LogMessages>;
       const bool drawings = std::is_same_v<Messages, mcap::DrawingMessages>;
       all.push_back({Messages::kTopic, ros::schema_of<typename Messages::Message>(),
-                     log || drawings ? Keeping::none : Keeping::latest});
+                     log || drawings ? Keeping::none : Keeping::last});
     };
     std::apply([&](const auto&... messages) { (add(messages), ...); }, mcap::EventMessages{});
     return all;

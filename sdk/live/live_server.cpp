@@ -29,6 +29,7 @@ using Clock = std::chrono::steady_clock;
 using boost::system::error_code;
 
 constexpr std::chrono::milliseconds kTick{50};
+constexpr std::size_t kMaxLines = 20;  // of the log, at once; then one a second
 constexpr int kSendBuffer = 1 << 18;  // of the kernel, for each client; more waits in the outbox
 
 using HttpRequest = http::request<http::empty_body>;
@@ -83,6 +84,7 @@ class LiveServer::Network {
   bool has_room() const { return clients_ < setup_.limits.clients; }
   std::size_t clients() const { return clients_; }
   void log(const std::string& text);
+  void log_more();
   void forget(const std::shared_ptr<Connection>& connection);
   void count_client(int change) { clients_ += static_cast<std::size_t>(change); }
 
@@ -99,9 +101,9 @@ class LiveServer::Network {
   asio::steady_timer again_, timer_;
   std::set<std::shared_ptr<Connection>> connections_;
   std::size_t clients_ = 0;
-  Clock::time_point next_second_ = Clock::now(), next_log_ = Clock::now();
+  Clock::time_point next_second_ = Clock::now();
   std::optional<Clock::time_point> farewell_until_;
-  std::size_t unlogged_ = 0;
+  std::size_t lines_ = kMaxLines, unlogged_ = 0;
 };
 
 /// One connection: an HTTP request, and what it asks for: the page, or a WebSocket.
@@ -295,14 +297,18 @@ void LiveServer::Network::publish(const LiveMessage& message) {
 }
 
 void LiveServer::Network::log(const std::string& text) {
-  const auto now = Clock::now();
-  if (now < next_log_) {
+  if (lines_ == 0) {
     ++unlogged_;
     return;
   }
-  next_log_ = now + std::chrono::seconds(1);
-  const std::size_t others = std::exchange(unlogged_, 0);
-  setup_.log(text + (others > 0 ? " (and " + std::to_string(others) + " lines left out before)" : ""));
+  --lines_;
+  setup_.log(text);
+}
+
+/// Each second there is room for one more line.
+void LiveServer::Network::log_more() {
+  lines_ = std::min(lines_ + 1, kMaxLines);
+  if (unlogged_ > 0) log(std::to_string(std::exchange(unlogged_, 0)) + " more such lines are left out");
 }
 
 void LiveServer::Network::forget(const std::shared_ptr<Connection>& connection) {
@@ -351,7 +357,10 @@ void LiveServer::Network::tick_each(const std::function<bool()>& tick) {
       farewell_until_ = now + setup_.limits.farewell;
     }
     const bool second = now >= next_second_;
-    if (second) next_second_ = now + std::chrono::seconds(1);
+    if (second) {
+      next_second_ = now + std::chrono::seconds(1);
+      log_more();
+    }
     for_each_client([&](Connection& c) {
       if (second || farewell_until_) c.session().tell_dropped();
       c.send_next();

@@ -32,7 +32,7 @@ struct LiveSetup {
   std::string name, session;
   std::map<std::string, std::string> metadata = {};
   LiveLimits limits = {};
-  std::function<void(const std::string&)> log = [](const std::string&) {};  // at most a line a second
+  std::function<void(const std::string&)> log = [](const std::string&) {};  // twenty lines, and then one a second
 };
 
 class LiveServer {

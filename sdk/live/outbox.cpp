@@ -7,7 +7,7 @@ namespace karst::live {
 void Outbox::put(const LiveMessage& message, Keeping keeping) {
   const std::size_t size = message.bytes->size();
   Queue& queue = queues_[message.topic];
-  if (keeping == Keeping::latest)
+  if (keeping == Keeping::whole)
     while (!queue.waiting.empty()) pop(queue);
   while (!queue.waiting.empty() &&
          (bytes_ + size > kMaxBytes || queue.waiting.size() >= kMaxMessages))

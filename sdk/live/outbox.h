@@ -12,7 +12,7 @@
 namespace karst::live {
 
 /// Where there is no room, the oldest messages of the same topic make it, and are counted as dropped; then the oldest of
-/// the topics that hold most. Of a topic whose last message says all, only that one waits: the others are not counted.
+/// the topics that hold most. Of a topic whose last message tells all, only that one waits: the others are not counted.
 class Outbox {
  public:
   static constexpr std::size_t kMaxBytes = std::size_t{8} << 20;  // or one message, if that is larger
@@ -26,6 +26,7 @@ class Outbox {
   bool empty() const { return bytes_ == 0 && messages_ == 0; }
   std::size_t bytes() const { return bytes_; }
 
+  const std::map<std::size_t, std::uint64_t>& dropped() const { return dropped_; }
   /// Dropped since the last call, of each topic.
   std::map<std::size_t, std::uint64_t> take_dropped() { return std::exchange(dropped_, {}); }
 

@@ -58,7 +58,8 @@ RecordFeed::Progress RecordFeed::read(const std::function<void(core::RecordPart,
   {
     const std::lock_guard lock(mutex_);
     taken_.swap(shared_);
-    progress = {lost_, closed_};
+    progress = {lost_, closed_ && own_.empty()};
+    if (closed_) hand_on();  // what found no room at the end: the recording thread is through
   }
   for (std::size_t at = 0; at < taken_.size();) {
     Head head;

@@ -20,7 +20,7 @@ class Retained {
       for (std::size_t i = 0; i < topics_.size(); ++i)
         if (topics_[i].keeping == Keeping::since_latest_map) messages_[i].clear();
     if (keeping == Keeping::none) return;
-    if (keeping == Keeping::latest) kept.clear();
+    if (keeping != Keeping::since_latest_map) kept.clear();
     kept.push_back(message);
   }
 

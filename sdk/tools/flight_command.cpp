@@ -30,6 +30,10 @@ void refuse_auto(flight::Mission& mission) {
     throw core::InputError(mission.file, "policy.name", std::string("policy auto ") + kHowToGetIt);
 }
 
+std::shared_ptr<core::RecordListener> refuse_live(const flight::Mission&, const LiveArguments&, bool) {
+  throw core::InputError("karst fly", "--live", kHowToGetIt);
+}
+
 std::optional<std::filesystem::path> refuse_campaign(const std::filesystem::path& run, const std::string&,
                                                      bool) {
   if (!std::filesystem::exists(run / "mission.info"))
@@ -52,7 +56,7 @@ void add_missing(CLI::App& group, const char* name) {
 
 std::shared_ptr<CLI::App> karst_command() {
   const std::shared_ptr<CLI::App> app = root_command();
-  add_fly_command(*app, refuse_auto);
+  add_fly_command(*app, refuse_auto, refuse_live);
   CLI::App& policy = add_policy_command(*app);
   CLI::App& cave = add_cave_command(*app);
   add_report_command(*app, refuse_campaign);

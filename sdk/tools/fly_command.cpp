@@ -41,6 +41,7 @@ struct FlyArguments {
   int threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool keys = false, force = false, json = false, quiet = false, no_report = false, real_time = false,
        record_requests = false, in_process = false;
+  LiveArguments live;
 };
 
 /// runs/POLICY-CAVE-SEED, with a number appended if that exists.
@@ -256,7 +257,7 @@ flight::FlightRequest request_of(const FlyArguments& args, const flight::Mission
   return request;
 }
 
-int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
+int fly(const FlyArguments& args, const PolicyChooser& choose_policy, const LiveStarter& start_live) {
   if (args.keys) {
     std::fputs(flight::mission_help(flight::named_vehicle(args.mission_file, args.overrides)).c_str(),
                stdout);
@@ -268,7 +269,13 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
     throw core::InputError("karst fly", "", "needs a MISSION file or --cave FILE; see karst fly --help");
   const flight::Mission mission = mission_of(args, choose_policy);
   make_cave_cache(args.cave_cache);
-  const flight::FlightRequest request = request_of(args, mission);
+  flight::FlightRequest request = request_of(args, mission);
+  if (args.live.address.empty() && !args.live.token.empty())
+    throw core::InputError("karst fly", "--live-token", "is for --live");
+  std::shared_ptr<core::RecordListener> live;  // outlives the flight
+  if (!args.live.address.empty() && args.check.empty())
+    live = start_live(mission, args.live, args.quiet || args.json);
+  request.listener = live.get();
 
   // All inputs are checked before anything is written.
   flight::MissionFlight mission_flight(mission, request);
@@ -303,7 +310,7 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy) {
 
 }  // namespace
 
-void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
+void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter start_live) {
   auto args = std::make_shared<FlyArguments>();
   CLI::App* fly_app = app.add_subcommand(
       "fly",
@@ -366,6 +373,15 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
       "a second of flight takes a second, as on a vehicle, with real-time priorities and locked memory where "
       "they are allowed; no two flights are the same: " +
           core::doc_path("docs/real_time.md"));
+  fly_app->add_flag("--live{127.0.0.1:8765}", args->live.address,
+                    "=ADDRESS:PORT: serve the flight as it goes, for Foxglove and for a page at this address; "
+                    "127.0.0.1:8765 if no address is given: " +
+                        core::doc_path("docs/live.md"));
+  fly_app
+      ->add_option("--live-token", args->live.token,
+                   "what clients of --live must give; needed beyond this machine's own address")
+      ->envname("KARST_LIVE_TOKEN")
+      ->check(not_empty());
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
   fly_app->add_flag("--quiet", args->quiet, "no status line, no notes, nothing on what policy auto chose");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");
@@ -393,9 +409,9 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy) {
                     "list every key of a mission file and end: of the simulator, or of the vehicle that the "
                     "mission or --set "
                     "names");
-  fly_app->callback([args, choose = std::move(choose_policy)] {
+  fly_app->callback([args, choose = std::move(choose_policy), live = std::move(start_live)] {
     host::take_policy_file(args->overrides.policy, args->plugins);
-    if (const int code = fly(*args, choose); code != 0) throw CLI::RuntimeError(code);
+    if (const int code = fly(*args, choose, live); code != 0) throw CLI::RuntimeError(code);
   });
 }
 

@@ -1,9 +1,15 @@
 // `karst fly`: one mission, from the mission file to the report.
 #pragma once
 #include <functional>
+#include <memory>
+#include <string>
 
 namespace CLI {
 class App;
+}
+
+namespace karst::core {
+class RecordListener;
 }
 
 namespace karst::flight {
@@ -16,6 +22,15 @@ namespace karst::tools {
 /// or what refuses in a program that lacks it.
 using PolicyChooser = std::function<void(flight::Mission&)>;
 
-void add_fly_command(CLI::App& app, PolicyChooser choose_policy);
+/// What --live and --live-token say.
+struct LiveArguments {
+  std::string address, token;
+};
+/// Serves the flight that it then listens to: serve_live (live_flight_option.h), or what refuses in a program that
+/// lacks it. `quiet`: prints nothing.
+using LiveStarter =
+    std::function<std::shared_ptr<core::RecordListener>(const flight::Mission&, const LiveArguments&, bool quiet)>;
+
+void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter start_live);
 
 }  // namespace karst::tools

@@ -20,6 +20,7 @@
 #include "sdk/tools/from_cloud_command.h"
 #include "sdk/tools/from_survey_command.h"
 #include "sdk/tools/help_commands.h"
+#include "sdk/tools/live_flight_option.h"
 #include "sdk/tools/map_command.h"
 #include "sdk/tools/policy_command.h"
 #include "sdk/tools/preflight_command.h"
@@ -50,7 +51,7 @@ std::optional<std::filesystem::path> campaign_page(const std::filesystem::path& 
 std::shared_ptr<CLI::App> karst_command() {
   const std::shared_ptr<CLI::App> app = root_command();
   add_preflight_command(*app);
-  add_fly_command(*app, flight::choose_policy);
+  add_fly_command(*app, flight::choose_policy, serve_live);
   add_compare_command(*app);
   add_trials_command(*app);
   add_results_command(*app);

@@ -1,0 +1,11 @@
+// `karst fly --live`: a flight that is followed (docs/live.md).
+#pragma once
+#include "sdk/tools/fly_command.h"
+
+namespace karst::tools {
+
+/// See LiveStarter. Throws core::InputError if the address cannot be served.
+std::shared_ptr<core::RecordListener> serve_live(const flight::Mission& mission, const LiveArguments& args,
+                                                 bool quiet);
+
+}  // namespace karst::tools
