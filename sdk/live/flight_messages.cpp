@@ -251,7 +251,7 @@ void FlightMessages::tell_map(double t_s) {
   put(kMap, t_s, ros::finished(std::move(cloud)));
 }
 
-void FlightMessages::end() {
+void FlightMessages::end(const core::VoxelMap* stored) {
   const auto finish = [&](auto& messages) { put(messages.kTopic, mcap::end_of(messages)); };
   std::apply([&](auto&... messages) { (finish(messages), ...); }, events_);
   if (last_) {
@@ -259,7 +259,13 @@ void FlightMessages::end() {
     tell_path(last_->t_s);
   }
   if (!new_cells_.empty()) tell_new_cells();
-  if (!occupied_.empty()) tell_map(now_s_);
+  if (stored)  // it has what the last scans changed while the vehicle touched down
+    put(kMap, now_s_, mcap::map_cloud(*stored, now_s_, clock_, [this](const core::CellKey& key) {
+          const auto found = occupied_.find(key);
+          return found == occupied_.end() ? std::nan("") : mcap::seconds_of_ms(found->second);
+        }));
+  else if (!occupied_.empty())
+    tell_map(now_s_);
 }
 
 }  // namespace karst::live

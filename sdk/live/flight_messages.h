@@ -42,8 +42,8 @@ class FlightMessages {
 
   /// What the recorder wrote. Throws std::runtime_error if it is nothing a recorder writes.
   void take(core::RecordPart part, std::string_view bytes);
-  /// What is left once the record is complete.
-  void end();
+  /// What is left once the record is complete. `stored`: the map as it was written; null where it could not be.
+  void end(const core::VoxelMap* stored = nullptr);
 
   std::uint64_t time_ns() const { return clock_.ns(now_s_); }
   std::size_t map_cells() const { return occupied_.size(); }

@@ -1,9 +1,11 @@
 #include "sdk/live/live_flight.h"
 
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "core_stack/common/error.h"
+#include "core_stack/mapping/octomap/octomap_io.h"
 
 namespace karst::live {
 namespace {
@@ -20,8 +22,9 @@ LiveSetup checked(LiveSetup setup) {
 
 }  // namespace
 
-LiveFlight::LiveFlight(LiveSetup setup, double map_resolution_m)
+LiveFlight::LiveFlight(LiveSetup setup, double map_resolution_m, std::filesystem::path stored_map)
     : log_(setup.log),
+      stored_map_(std::move(stored_map)),
       server_(checked(std::move(setup)), Retained(flight_topics(), map_topic())),
       messages_(map_resolution_m, [this](const LiveMessage& m) { server_.publish(m); }),
       thread_([this] { run(); }) {}
@@ -39,6 +42,16 @@ void LiveFlight::run() noexcept {
   }
 }
 
+void LiveFlight::end() {
+  std::optional<core::VoxelMap> stored;
+  if (!stored_map_.empty() && std::filesystem::exists(stored_map_)) try {
+      stored.emplace(core::read_octomap(stored_map_.string()));
+    } catch (const core::InputError& e) {
+      log_(e.what());
+    }
+  messages_.end(stored ? &*stored : nullptr);
+}
+
 bool LiveFlight::tick() {
   const bool over = over_;
   const RecordFeed::Progress progress = feed_.read([this](core::RecordPart part, std::string_view bytes) {
@@ -54,7 +67,7 @@ bool LiveFlight::tick() {
                  std::to_string(lost_) + " records came faster than they could be served: the map may lack cells",
                  "lost");
   }
-  if (progress.closed && !std::exchange(ended_, true)) messages_.end();
+  if (progress.closed && !std::exchange(ended_, true)) end();
   if (const std::uint64_t now_ns = messages_.time_ns(); now_ns > told_ns_) {
     told_ns_ = now_ns;
     server_.tell_time(now_ns);

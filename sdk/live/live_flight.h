@@ -1,6 +1,7 @@
 // A flight that is followed: its record, while it is written, becomes messages for who is connected.
 #pragma once
 #include <atomic>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -12,9 +13,9 @@ namespace karst::live {
 
 class LiveFlight {
  public:
-  /// Listens from now on, on a thread without priority. Throws core::InputError naming the address, or if it is not
+  /// `stored_map`: where the run's map will be, as OctoMap's file. Listens from now on, on a thread without priority. Throws core::InputError naming the address, or if it is not
   /// this machine's own and there is no token.
-  LiveFlight(LiveSetup setup, double map_resolution_m);
+  LiveFlight(LiveSetup setup, double map_resolution_m, std::filesystem::path stored_map = {});
   /// Once the record is complete. Gives clients setup.limits.farewell to read what waits.
   ~LiveFlight();
   LiveFlight(const LiveFlight&) = delete;
@@ -26,8 +27,10 @@ class LiveFlight {
  private:
   void run() noexcept;
   bool tick();
+  void end();
 
-  std::function<void(const std::string&)> log_;
+  const std::function<void(const std::string&)> log_;
+  const std::filesystem::path stored_map_;
   RecordFeed feed_;
   LiveServer server_;
   FlightMessages messages_;

@@ -97,4 +97,13 @@ void append_cell(ros::PointCloud2& cloud, const core::CellKey& key, double resol
   ros::append(cloud, static_cast<float>(since_s));
 }
 
+ros::PointCloud2 map_cloud(const core::VoxelMap& map, double t_s, const FlightClock& clock,
+                           const std::function<double(const core::CellKey&)>& since_s) {
+  ros::PointCloud2 cloud = cells_cloud(t_s, clock);
+  map.for_each_known([&](const core::CellKey& key, core::Cell cell, float) {
+    if (cell == core::Cell::occupied) append_cell(cloud, key, map.resolution_m(), since_s(key));
+  });
+  return ros::finished(std::move(cloud));
+}
+
 }  // namespace karst::mcap

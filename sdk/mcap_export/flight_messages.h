@@ -1,6 +1,7 @@
 // Messages made of single values of a flight's record, for exports and for flights that are followed.
 #pragma once
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -60,6 +61,9 @@ class BatteryPace {
 ros::PointCloud2 cells_cloud(double t_s, const FlightClock& clock);
 /// The centre of a cell, and the flight time from which it has been occupied.
 void append_cell(ros::PointCloud2& cloud, const core::CellKey& key, double resolution_m, double since_s);
+/// A whole map, as it was stored. `since_s` gives the time of each cell, NaN where it is not known.
+ros::PointCloud2 map_cloud(const core::VoxelMap& map, double t_s, const FlightClock& clock,
+                           const std::function<double(const core::CellKey&)>& since_s);
 inline double seconds_of_ms(std::int32_t ms) { return ms / 1000.0; }
 
 /// /map/new tells at the end of each step what became occupied in it.

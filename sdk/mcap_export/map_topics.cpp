@@ -36,15 +36,6 @@ StoredMap stored_map(const RunRecord& run, std::vector<std::string>& problems) {
   }
 }
 
-ros::PointCloud2 cloud_of(const core::VoxelMap& map, const RunRecord& run, const FlightClock& clock,
-                          double t_s) {
-  ros::PointCloud2 cloud = cells_cloud(t_s, clock);
-  map.for_each_known([&](const core::CellKey& key, core::Cell cell, float) {
-    if (cell == core::Cell::occupied) append_cell(cloud, key, map.resolution_m(), since_s(run, key));
-  });
-  return ros::finished(std::move(cloud));
-}
-
 ros::PointCloud2 grown_until(const RunRecord& run, const FlightClock& clock, double t_s) {
   ros::PointCloud2 cloud = cells_cloud(t_s, clock);
   for (const OccupiedSpan& s : run.growth)
@@ -63,8 +54,10 @@ Topic whole_maps(const RunRecord& run, const FlightClock& clock, const StoredMap
     times = {end_s};
   return topic_of<ros::PointCloud2>("/map", clock, times.size(), [&run, clock, times, stored](std::size_t i) {
     const bool last = i + 1 == times.size();
-    return std::pair(times[i], last && stored ? cloud_of(*stored, run, clock, times[i])
-                                              : grown_until(run, clock, times[i]));
+    return std::pair(times[i], last && stored
+                                   ? map_cloud(*stored, times[i], clock,
+                                               [&](const core::CellKey& key) { return since_s(run, key); })
+                                   : grown_until(run, clock, times[i]));
   });
 }
 

@@ -30,7 +30,8 @@ void refuse_auto(flight::Mission& mission) {
     throw core::InputError(mission.file, "policy.name", std::string("policy auto ") + kHowToGetIt);
 }
 
-std::shared_ptr<core::RecordListener> refuse_live(const flight::Mission&, const LiveArguments&, bool) {
+std::shared_ptr<core::RecordListener> refuse_live(const flight::Mission&, const flight::FlightRequest&,
+                                                  const LiveArguments&) {
   throw core::InputError("karst fly", "--live", kHowToGetIt);
 }
 

@@ -274,7 +274,7 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy, const Live
     throw core::InputError("karst fly", "--live-token", "is for --live");
   std::shared_ptr<core::RecordListener> live;  // outlives the flight
   if (!args.live.address.empty() && args.check.empty())
-    live = start_live(mission, args.live, args.quiet || args.json);
+    live = start_live(mission, request, args.live);
   request.listener = live.get();
 
   // All inputs are checked before anything is written.

@@ -13,6 +13,7 @@ class RecordListener;
 }
 
 namespace karst::flight {
+struct FlightRequest;
 struct Mission;
 }
 
@@ -27,9 +28,9 @@ struct LiveArguments {
   std::string address, token;
 };
 /// Serves the flight that it then listens to: serve_live (live_flight_option.h), or what refuses in a program that
-/// lacks it. `quiet`: prints nothing.
-using LiveStarter =
-    std::function<std::shared_ptr<core::RecordListener>(const flight::Mission&, const LiveArguments&, bool quiet)>;
+/// lacks it.
+using LiveStarter = std::function<std::shared_ptr<core::RecordListener>(
+    const flight::Mission&, const flight::FlightRequest&, const LiveArguments&)>;
 
 void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter start_live);
 

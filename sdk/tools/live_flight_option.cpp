@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "sdk/flight/mission_file.h"
+#include "sdk/flight/flight_setup.h"
 #include "sdk/live/live_flight.h"
 #include "sdk/terminal/terminal.h"
 
@@ -20,8 +20,9 @@ std::string session_name() {
 
 }  // namespace
 
-std::shared_ptr<core::RecordListener> serve_live(const flight::Mission& mission, const LiveArguments& args,
-                                                 bool quiet) {
+std::shared_ptr<core::RecordListener> serve_live(const flight::Mission& mission,
+                                                 const flight::FlightRequest& request,
+                                                 const LiveArguments& args) {
   live::LiveSetup setup;
   setup.endpoint = live::endpoint_of(args.address, "--live");
   setup.token = args.token;
@@ -31,9 +32,10 @@ std::shared_ptr<core::RecordListener> serve_live(const flight::Mission& mission,
                     {"vehicle", mission.vehicle},
                     {"cave", mission.cave},
                     {"seed", std::to_string(mission.seed)}};
-  if (!quiet) setup.log = [](const std::string& text) { print_error("live: %s\n", text.c_str()); };
-  const auto live = std::make_shared<live::LiveFlight>(std::move(setup), mission.core.map.resolution_m);
-  if (!quiet)
+  if (request.notes) setup.log = [](const std::string& text) { print_error("live: %s\n", text.c_str()); };
+  const auto live = std::make_shared<live::LiveFlight>(std::move(setup), mission.core.map.resolution_m,
+                                                       request.run_dir / "map.bt");
+  if (request.notes)
     print_error("live: follow the flight at http://%s/%s\n", live::text_of(live->endpoint()).c_str(),
                 args.token.empty() ? "" : "?token=...");
   return {live, &live->listener()};

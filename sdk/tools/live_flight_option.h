@@ -5,7 +5,8 @@
 namespace karst::tools {
 
 /// See LiveStarter. Throws core::InputError if the address cannot be served.
-std::shared_ptr<core::RecordListener> serve_live(const flight::Mission& mission, const LiveArguments& args,
-                                                 bool quiet);
+std::shared_ptr<core::RecordListener> serve_live(const flight::Mission& mission,
+                                                 const flight::FlightRequest& request,
+                                                 const LiveArguments& args);
 
 }  // namespace karst::tools

@@ -1,5 +1,6 @@
 #include "sdk/preflight/vehicle/measurements.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -170,6 +171,18 @@ MachineFacts machine_facts(const std::string& run_folder) {
   constexpr std::chrono::sys_days kBuilt = std::chrono::year{2025} / 1 / 1;
   facts.clock_plausible = std::chrono::system_clock::now() > kBuilt;
   return facts;
+}
+
+double scans_bytes_per_s(const VehicleRecord& record) {
+  constexpr double kPointBytes = 22, kImuLineBytes = 100;  // of docs/replay.md's files, at most
+  const auto& scans = record.scans_at_rest;
+  if (scans.empty() || !scans.front()->model) return 0;
+  const double scan_hz = 1 / core::seconds(scans.front()->model->period);
+  std::size_t beams = 0;
+  for (const auto& scan : scans) beams = std::max(beams, scan->range_m.size());
+  const double duration_s = core::seconds(record.end - record.begin);
+  const double imu_hz = duration_s > 0 ? static_cast<double>(record.imu.size()) / duration_s : 0;
+  return scan_hz * static_cast<double>(beams) * kPointBytes + imu_hz * kImuLineBytes;
 }
 
 }  // namespace karst::preflight

@@ -58,7 +58,8 @@ struct MotionFigures {
 struct MachineFacts {
   std::string run_folder;
   std::optional<std::uintmax_t> free_bytes;  // nothing if the folder cannot be examined
-  bool clock_plausible = true;               // the date is not before karst was built
+  double scans_bytes = 0;       // what the flight's scans take, at most; 0 without record.scans
+  bool clock_plausible = true;  // the date is not before karst was built
   std::string policy, policy_problem;        // why it cannot be loaded; "" if it can
 };
 
@@ -93,5 +94,8 @@ VehicleMeasurements measure(const VehicleRecord& record, const MeasureOptions& o
 
 /// `run_folder` may be to be created.
 MachineFacts machine_facts(const std::string& run_folder);
+
+/// What record.scans writes in a second, if every beam of a scan returns; 0 without a LiDAR.
+double scans_bytes_per_s(const VehicleRecord& record);
 
 }  // namespace karst::preflight

@@ -250,6 +250,17 @@ TEST(VehicleRules, BatteryBarometerMachinePolicyAndAutopilot) {
               "free space for runs");
   expect_only([](auto& m) { m.machine.free_bytes.reset(); }, Outcome::no_go, Part::machine,
               "free space for runs");
+  // Scans of an hour at 3.6 MB/s need 12 GiB more.
+  const double scans = 3600 * 3.6e6;
+  const auto free = [scans](double gib) {
+    return [=](auto& m) {
+      m.machine.scans_bytes = scans;
+      m.machine.free_bytes = static_cast<std::uintmax_t>(gib * (1 << 30));
+    };
+  };
+  EXPECT_TRUE(wrong_with(free(16.5)).empty());
+  expect_only(free(15.5), Outcome::watch, Part::machine, "free space for runs");
+  expect_only(free(12.5), Outcome::no_go, Part::machine, "free space for runs");
   expect_only([](auto& m) { m.machine.clock_plausible = false; }, Outcome::watch, Part::machine, "date");
   expect_only([](auto& m) { m.machine.policy_problem = "no such policy"; }, Outcome::no_go, Part::policy,
               "loads: nearest_frontier");
