@@ -24,7 +24,7 @@ struct FlightRequest {
   Report report = Report::written;
   OldRun old_run = OldRun::kept;
   bool record_requests = false;
-  bool notes = true, status_line = true;  // on standard error
+  bool notes = true, status_line = true;     // on standard error
   core::RecordListener* listener = nullptr;  // to the record of a single vehicle; outlives the flight
 };
 

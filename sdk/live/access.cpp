@@ -78,7 +78,8 @@ std::string_view token_of(std::string_view target, std::string_view authorizatio
 }
 
 bool same_token(std::string_view given, std::string_view expected) {
-  return given.size() == expected.size() && sodium_memcmp(given.data(), expected.data(), expected.size()) == 0;
+  return given.size() == expected.size() &&
+         sodium_memcmp(given.data(), expected.data(), expected.size()) == 0;
 }
 
 }  // namespace karst::live

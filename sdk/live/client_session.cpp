@@ -46,7 +46,8 @@ void ClientSession::take(const Unsubscribe& request) {
 
 void ClientSession::refuse(const std::string& why) {
   if (++refused_ > kMaxRefused)
-    complaint_ = "more than " + std::to_string(kMaxRefused) + " requests that make no sense; the last: " + why;
+    complaint_ =
+        "more than " + std::to_string(kMaxRefused) + " requests that make no sense; the last: " + why;
   else
     tell(StatusLevel::error, why);
 }
@@ -63,8 +64,7 @@ void ClientSession::text(std::string bytes) {
 }
 
 void ClientSession::publish(const LiveMessage& message) {
-  if (subscriptions_.contains(message.topic))
-    outbox_.put(message, retained_.topics()[message.topic].keeping);
+  if (subscriptions_.contains(message.topic)) outbox_.put(message, retained_.topics()[message.topic].keeping);
 }
 
 std::uint64_t ClientSession::dropped() const {

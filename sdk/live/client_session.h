@@ -1,4 +1,5 @@
-// One client's side of the protocol, without its socket: what it has subscribed to, and what is to be sent to it.
+// One client's side of the protocol, without its socket: what it has subscribed to, and what is to be sent to
+// it.
 #pragma once
 #include <cstdint>
 #include <deque>

@@ -10,16 +10,16 @@
 #include <utility>
 
 #include "core_stack/common/json_text.h"
-#include "sdk/mcap_export/point_cloud.h"
 #include "core_stack/mission/recording/recorder.h"
 #include "sdk/evaluation/record/lines.h"
 #include "sdk/mcap_export/flight_topics.h"
+#include "sdk/mcap_export/point_cloud.h"
 
 namespace karst::live {
 namespace {
 
-using core::RecordPart;
 using core::Recorder;
+using core::RecordPart;
 using mcap::kBodyFrame;
 
 constexpr const char *kTf = "/tf", *kOdometry = "/odometry", *kPath = "/path", *kMap = "/map",
@@ -27,7 +27,8 @@ constexpr const char *kTf = "/tf", *kOdometry = "/odometry", *kPath = "/path", *
 
 std::size_t place_of(std::string_view topic) {
   const auto& all = flight_topics();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const LiveTopic& t) { return t.name == topic; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const LiveTopic& t) { return t.name == topic; });
   return static_cast<std::size_t>(found - all.begin());
 }
 
@@ -76,9 +77,8 @@ std::string_view without_end(std::string_view line) {
 /// The last of a queue by time that is not after t, as a row of a table would be looked up.
 template <class Row, class Time>
 const Row* row_at(const std::deque<Row>& rows, double t_s, Time Row::*time) {
-  const auto after =
-      std::upper_bound(rows.begin(), rows.end(), t_s + mcap::kTimeRounding_s,
-                       [time](double t, const Row& row) { return t < row.*time; });
+  const auto after = std::upper_bound(rows.begin(), rows.end(), t_s + mcap::kTimeRounding_s,
+                                      [time](double t, const Row& row) { return t < row.*time; });
   return after == rows.begin() ? nullptr : &*(after - 1);
 }
 
@@ -94,13 +94,12 @@ void keep(std::deque<Row>& rows, Row row) {
 
 const std::vector<LiveTopic>& flight_topics() {
   static const std::vector<LiveTopic> topics = [] {
-    std::vector<LiveTopic> all = {
-        {kTf, ros::schema_of<ros::TFMessage>(), Keeping::none},
-        {kOdometry, ros::schema_of<ros::Odometry>(), Keeping::none},
-        {kPath, ros::schema_of<ros::Path>(), Keeping::whole},
-        {kMap, ros::schema_of<ros::PointCloud2>(), Keeping::whole},
-        {kNewCells, ros::schema_of<ros::PointCloud2>(), Keeping::since_latest_map},
-        {kBattery, ros::schema_of<ros::BatteryState>(), Keeping::last}};
+    std::vector<LiveTopic> all = {{kTf, ros::schema_of<ros::TFMessage>(), Keeping::none},
+                                  {kOdometry, ros::schema_of<ros::Odometry>(), Keeping::none},
+                                  {kPath, ros::schema_of<ros::Path>(), Keeping::whole},
+                                  {kMap, ros::schema_of<ros::PointCloud2>(), Keeping::whole},
+                                  {kNewCells, ros::schema_of<ros::PointCloud2>(), Keeping::since_latest_map},
+                                  {kBattery, ros::schema_of<ros::BatteryState>(), Keeping::last}};
     const auto add = [&]<class Messages>(const Messages&) {
       const bool log = std::is_same_v<Messages, mcap::LogMessages>;
       const bool drawings = std::is_same_v<Messages, mcap::DrawingMessages>;
@@ -207,8 +206,7 @@ void FlightMessages::take_growth(std::string_view record) {
   if (ms < 0) {
     occupied_.erase(key);
   } else if (occupied_.emplace(key, ms).second) {
-    if (!new_cells_.empty() &&
-        mcap::new_cells_step(new_cells_.front().from_ms) != mcap::new_cells_step(ms))
+    if (!new_cells_.empty() && mcap::new_cells_step(new_cells_.front().from_ms) != mcap::new_cells_step(ms))
       tell_new_cells();
     new_cells_.push_back({ms, key});
   }

@@ -1,5 +1,5 @@
-// The messages of a flight, of its record as it grows: those that an export of the finished run has, byte for byte, but
-// for the times at which /path and /map tell what has grown until then.
+// The messages of a flight, of its record as it grows: those that an export of the finished run has, byte for
+// byte, but for the times at which /path and /map tell what has grown until then.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,8 +23,8 @@ const std::vector<LiveTopic>& flight_topics();
 std::size_t map_topic();
 std::size_t new_cells_topic();
 
-/// When what grows is told whole: each second at first, then at intervals of a fortieth of the flight time. So what is
-/// sent of it in all is at most about forty times the last message.
+/// When what grows is told whole: each second at first, then at intervals of a fortieth of the flight time.
+/// So what is sent of it in all is at most about forty times the last message.
 class SnapshotTimes {
  public:
   double due_s() const { return due_s_; }
@@ -38,11 +38,13 @@ class SnapshotTimes {
 class FlightMessages {
  public:
   using Sink = std::function<void(LiveMessage)>;
-  FlightMessages(double map_resolution_m, Sink sink) : resolution_m_(map_resolution_m), sink_(std::move(sink)) {}
+  FlightMessages(double map_resolution_m, Sink sink)
+      : resolution_m_(map_resolution_m), sink_(std::move(sink)) {}
 
   /// What the recorder wrote. Throws std::runtime_error if it is nothing a recorder writes.
   void take(core::RecordPart part, std::string_view bytes);
-  /// What is left once the record is complete. `stored`: the map as it was written; null where it could not be.
+  /// What is left once the record is complete. `stored`: the map as it was written; null where it could not
+  /// be.
   void end(const core::VoxelMap* stored = nullptr);
 
   std::uint64_t time_ns() const { return clock_.ns(now_s_); }
@@ -92,7 +94,7 @@ class FlightMessages {
   SnapshotTimes path_times_, map_times_;
 
   std::unordered_map<core::CellKey, std::int32_t, core::CellKeyHash> occupied_;  // and since when, ms
-  std::vector<NewCell> new_cells_;  // not yet told
+  std::vector<NewCell> new_cells_;                                               // not yet told
 };
 
 }  // namespace karst::live

@@ -63,9 +63,10 @@ bool LiveFlight::tick() {
   });
   if (progress.lost > lost_) {
     lost_ = progress.lost;
-    server_.tell(StatusLevel::warning,
-                 std::to_string(lost_) + " records came faster than they could be served: the map may lack cells",
-                 "lost");
+    server_.tell(
+        StatusLevel::warning,
+        std::to_string(lost_) + " records came faster than they could be served: the map may lack cells",
+        "lost");
   }
   if (progress.closed && !std::exchange(ended_, true)) end();
   if (const std::uint64_t now_ns = messages_.time_ns(); now_ns > told_ns_) {

@@ -13,8 +13,9 @@ namespace karst::live {
 
 class LiveFlight {
  public:
-  /// `stored_map`: where the run's map will be, as OctoMap's file. Listens from now on, on a thread without priority. Throws core::InputError naming the address, or if it is not
-  /// this machine's own and there is no token.
+  /// `stored_map`: where the run's map will be, as OctoMap's file. Listens from now on, on a thread without
+  /// priority. Throws core::InputError naming the address, or if it is not this machine's own and there is no
+  /// token.
   LiveFlight(LiveSetup setup, double map_resolution_m, std::filesystem::path stored_map = {});
   /// Once the record is complete. Gives clients setup.limits.farewell to read what waits.
   ~LiveFlight();

@@ -30,7 +30,7 @@ using boost::system::error_code;
 
 constexpr std::chrono::milliseconds kTick{50};
 constexpr std::size_t kMaxLines = 20;  // of the log, at once; then one a second
-constexpr int kSendBuffer = 1 << 18;  // of the kernel, for each client; more waits in the outbox
+constexpr int kSendBuffer = 1 << 18;   // of the kernel, for each client; more waits in the outbox
 
 using HttpRequest = http::request<http::empty_body>;
 using HttpResponse = http::response<http::string_body>;
@@ -143,7 +143,8 @@ class LiveServer::Network::Connection : public std::enable_shared_from_this<Conn
       self->send_next();
     };
     if (writing_->head)
-      ws_.async_write(std::array<asio::const_buffer, 2>{asio::buffer(*writing_->head), asio::buffer(bytes)}, on_written);
+      ws_.async_write(std::array<asio::const_buffer, 2>{asio::buffer(*writing_->head), asio::buffer(bytes)},
+                      on_written);
     else
       ws_.async_write(asio::buffer(bytes), on_written);
   }
@@ -185,15 +186,13 @@ class LiveServer::Network::Connection : public std::enable_shared_from_this<Conn
       return answer(http::status::unauthorized, "the token is missing, or another: /?token=...");
     if (request_.method() != http::verb::get)
       return answer(http::status::method_not_allowed, "this server only answers GET");
-    if (target.substr(0, target.find('?')) != "/")
-      return answer(http::status::not_found, "there is / alone");
+    if (target.substr(0, target.find('?')) != "/") return answer(http::status::not_found, "there is / alone");
     if (websocket::is_upgrade(request_)) return upgrade();
     send(response_of(http::status::ok, "text/html; charset=utf-8", live_page()));
   }
 
   void upgrade() {
-    const std::string_view chosen =
-        chosen_subprotocol(view(request_[http::field::sec_websocket_protocol]));
+    const std::string_view chosen = chosen_subprotocol(view(request_[http::field::sec_websocket_protocol]));
     if (chosen.empty())
       return answer(http::status::bad_request, "offer the subprotocol " + std::string(kSubprotocols.front()));
     if (!network_.has_room())
@@ -206,8 +205,8 @@ class LiveServer::Network::Connection : public std::enable_shared_from_this<Conn
     }));
     ws_.read_message_max(limits.request_bytes);
     ws_.auto_fragment(false);
-    session_.emplace(network_.retained(), server_info(network_.setup().name, network_.setup().session,
-                                                      network_.setup().metadata));
+    session_.emplace(network_.retained(),
+                     server_info(network_.setup().name, network_.setup().session, network_.setup().metadata));
     network_.count_client(+1);
     buffer_.clear();
     ws_.async_accept(request_, [self = shared_from_this()](error_code error) {
@@ -222,7 +221,8 @@ class LiveServer::Network::Connection : public std::enable_shared_from_this<Conn
     ws_.async_read(buffer_, [self = shared_from_this()](error_code error, std::size_t) {
       if (error) return self->end(error);
       if (self->ws_.got_text())
-        self->session_->receive({static_cast<const char*>(self->buffer_.data().data()), self->buffer_.size()});
+        self->session_->receive(
+            {static_cast<const char*>(self->buffer_.data().data()), self->buffer_.size()});
       else
         self->session_->receive_binary();
       self->buffer_.clear();
@@ -254,6 +254,9 @@ class LiveServer::Network::Connection : public std::enable_shared_from_this<Conn
       end("it has closed the connection");
     else if (error == beast::error::timeout)
       end("it answers no ping");
+    else if (error == asio::error::eof || error == asio::error::connection_reset ||
+             error == asio::error::not_connected || error == asio::error::broken_pipe)
+      end("it is gone");
     else
       end(error ? error.message() : "");
   }

@@ -1,8 +1,8 @@
-// Serves a flight to clients on the network: Foxglove's protocol by WebSocket, and a page that follows the flight by
-// HTTP, at one address.
+// Serves a flight to clients on the network: Foxglove's protocol by WebSocket, and a page that follows the
+// flight by HTTP, at one address.
 //
-// All of it runs on the thread that calls run(). Whatever clients do costs that thread's time alone, and memory within
-// LiveLimits.
+// All of it runs on the thread that calls run(). Whatever clients do costs that thread's time alone, and
+// memory within LiveLimits.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -32,7 +32,8 @@ struct LiveSetup {
   std::string name, session;
   std::map<std::string, std::string> metadata = {};
   LiveLimits limits = {};
-  std::function<void(const std::string&)> log = [](const std::string&) {};  // twenty lines, and then one a second
+  std::function<void(const std::string&)> log = [](const std::string&) {
+  };  // twenty lines, and then one a second
 };
 
 class LiveServer {

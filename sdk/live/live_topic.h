@@ -8,11 +8,12 @@
 
 namespace karst::live {
 
-/// What a client gets of a topic when it subscribes, and what becomes of the topic's messages when it is slow.
+/// What a client gets of a topic when it subscribes, and what becomes of the topic's messages when it is
+/// slow.
 enum class Keeping : std::uint8_t {
-  none,              // nothing: it begins with the next message; the oldest are dropped
-  last,              // the last message; the oldest are dropped
-  whole,             // the last message, as it tells all that has grown; one that waits is replaced by the next
+  none,   // nothing: it begins with the next message; the oldest are dropped
+  last,   // the last message; the oldest are dropped
+  whole,  // the last message, as it tells all that has grown; one that waits is replaced by the next
   since_latest_map,  // what has been added to the last /map; the oldest are dropped
 };
 

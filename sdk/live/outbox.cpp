@@ -9,8 +9,7 @@ void Outbox::put(const LiveMessage& message, Keeping keeping) {
   Queue& queue = queues_[message.topic];
   if (keeping == Keeping::whole)
     while (!queue.waiting.empty()) pop(queue);
-  while (!queue.waiting.empty() &&
-         (bytes_ + size > kMaxBytes || queue.waiting.size() >= kMaxMessages))
+  while (!queue.waiting.empty() && (bytes_ + size > kMaxBytes || queue.waiting.size() >= kMaxMessages))
     drop_oldest(message.topic);
   while (messages_ > 0 && bytes_ + size > kMaxBytes) drop_oldest(fullest());
   queue.waiting.push_back({next_number_++, message});
@@ -22,8 +21,7 @@ void Outbox::put(const LiveMessage& message, Keeping keeping) {
 std::optional<LiveMessage> Outbox::take() {
   Queue* oldest = nullptr;
   for (auto& [topic, queue] : queues_)
-    if (!queue.waiting.empty() &&
-        (!oldest || queue.waiting.front().number < oldest->waiting.front().number))
+    if (!queue.waiting.empty() && (!oldest || queue.waiting.front().number < oldest->waiting.front().number))
       oldest = &queue;
   if (!oldest) return std::nullopt;
   LiveMessage message = oldest->waiting.front().message;

@@ -11,8 +11,9 @@
 
 namespace karst::live {
 
-/// Where there is no room, the oldest messages of the same topic make it, and are counted as dropped; then the oldest of
-/// the topics that hold most. Of a topic whose last message tells all, only that one waits: the others are not counted.
+/// Where there is no room, the oldest messages of the same topic make it, and are counted as dropped; then
+/// the oldest of the topics that hold most. Of a topic whose last message tells all, only that one waits: the
+/// others are not counted.
 class Outbox {
  public:
   static constexpr std::size_t kMaxBytes = std::size_t{8} << 20;  // or one message, if that is larger

@@ -9,8 +9,8 @@
 
 namespace karst::live {
 
-/// The recording thread only appends to memory of its own, and hands it on where it gets the mutex at once: it never
-/// waits. What finds no room is lost, and counted.
+/// The recording thread only appends to memory of its own, and hands it on where it gets the mutex at once:
+/// it never waits. What finds no room is lost, and counted.
 class RecordFeed final : public core::RecordListener {
  public:
   /// Of either thread. Half an hour of poses, or a map's growth of two million cells.
@@ -29,7 +29,7 @@ class RecordFeed final : public core::RecordListener {
  private:
   void hand_on();
 
-  std::string own_;            // of the recording thread
+  std::string own_;  // of the recording thread
   std::uint64_t own_lost_ = 0;
 
   core::InheritingMutex mutex_;  // of what follows

@@ -1,5 +1,5 @@
-// What the events of a flight add to its topics. Each class owns what its topic remembers of earlier events, so that an
-// export of all events, and a flight that is followed, give the same messages.
+// What the events of a flight add to its topics. Each class owns what its topic remembers of earlier events,
+// so that an export of all events, and a flight that is followed, give the same messages.
 #pragma once
 #include <map>
 #include <optional>
@@ -49,7 +49,8 @@ class GoalMessages {
   std::vector<core::event::Goal> open_;
 };
 
-/// What the policy drew, all of one decision in one message: it is complete once a later event comes, or the end.
+/// What the policy drew, all of one decision in one message: it is complete once a later event comes, or the
+/// end.
 class DrawingMessages {
  public:
   using Message = ros::MarkerArray;

@@ -45,7 +45,8 @@ ros::Odometry odometry_of(const PoseInFlight& in_flight, const FlightClock& cloc
       ros::vector3(pose.T_world_body.orientation.conjugate() * velocity_mps.value_or(motion.velocity_mps));
   out.twist.twist.angular = ros::vector3(motion.body_rate_radps);
   if (!sigmas || !std::isfinite(sigmas->position_m) || !std::isfinite(sigmas->heading_rad)) return out;
-  // Variances of x, y, z and of the turns about them. Gravity tells roll and pitch better than the heading is known.
+  // Variances of x, y, z and of the turns about them. Gravity tells roll and pitch better than the heading is
+  // known.
   for (std::size_t i = 0; i < 6; ++i) {
     const double sigma = i < 3 ? sigmas->position_m : sigmas->heading_rad;
     out.pose.covariance[7 * i] = sigma * sigma;

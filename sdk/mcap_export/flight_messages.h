@@ -19,13 +19,14 @@ struct PoseSigmas {
   double position_m = 0, heading_rad = 0;
 };
 
-/// A pose with its motion from the pose before to the pose after, which at the ends of a flight is the pose itself.
+/// A pose with its motion from the pose before to the pose after, which at the ends of a flight is the pose
+/// itself.
 struct PoseInFlight {
   const evaluation::StampedPose &before, &pose, &after;
 };
 
-/// `velocity_mps`: the estimator's own, in the world frame. Sigmas that are not known leave the covariance 0; roll and
-/// pitch have the heading's, an upper bound.
+/// `velocity_mps`: the estimator's own, in the world frame. Sigmas that are not known leave the covariance 0;
+/// roll and pitch have the heading's, an upper bound.
 ros::Odometry odometry_of(const PoseInFlight& in_flight, const FlightClock& clock, const char* body_frame,
                           const std::optional<core::Vec3>& velocity_mps,
                           const std::optional<PoseSigmas>& sigmas);

@@ -114,11 +114,11 @@ Topic battery_topic(const RunRecord& run, const FlightClock& clock) {
   const auto* fraction = run.telemetry.column("battery_fraction");
   for (std::size_t i = 0; times && fraction && i < times->size(); ++i)
     if (pace.takes((*times)[i], (*fraction)[i])) rows.push_back(i);
-  return topic_of<ros::BatteryState>(
-      "/battery", clock, rows.size(), [clock, times, fraction, rows](std::size_t i) {
-        const double t_s = (*times)[rows[i]];
-        return std::pair(t_s, battery_of(t_s, (*fraction)[rows[i]], clock));
-      });
+  return topic_of<ros::BatteryState>("/battery", clock, rows.size(),
+                                     [clock, times, fraction, rows](std::size_t i) {
+                                       const double t_s = (*times)[rows[i]];
+                                       return std::pair(t_s, battery_of(t_s, (*fraction)[rows[i]], clock));
+                                     });
 }
 
 }  // namespace karst::mcap

@@ -273,8 +273,7 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy, const Live
   if (args.live.address.empty() && !args.live.token.empty())
     throw core::InputError("karst fly", "--live-token", "is for --live");
   std::shared_ptr<core::RecordListener> live;  // outlives the flight
-  if (!args.live.address.empty() && args.check.empty())
-    live = start_live(mission, request, args.live);
+  if (!args.live.address.empty() && args.check.empty()) live = start_live(mission, request, args.live);
   request.listener = live.get();
 
   // All inputs are checked before anything is written.
@@ -373,10 +372,11 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter sta
       "a second of flight takes a second, as on a vehicle, with real-time priorities and locked memory where "
       "they are allowed; no two flights are the same: " +
           core::doc_path("docs/real_time.md"));
-  fly_app->add_flag("--live{127.0.0.1:8765}", args->live.address,
-                    "=ADDRESS:PORT: serve the flight as it goes, for Foxglove and for a page at this address; "
-                    "127.0.0.1:8765 if no address is given: " +
-                        core::doc_path("docs/live.md"));
+  fly_app->add_flag(
+      "--live{127.0.0.1:8765}", args->live.address,
+      "=ADDRESS:PORT: serve the flight as it goes, for Foxglove and for a page at this address; "
+      "127.0.0.1:8765 if no address is given: " +
+          core::doc_path("docs/live.md"));
   fly_app
       ->add_option("--live-token", args->live.token,
                    "what clients of --live must give; needed beyond this machine's own address")

@@ -15,7 +15,7 @@ class RecordListener;
 namespace karst::flight {
 struct FlightRequest;
 struct Mission;
-}
+}  // namespace karst::flight
 
 namespace karst::tools {
 
@@ -27,8 +27,8 @@ using PolicyChooser = std::function<void(flight::Mission&)>;
 struct LiveArguments {
   std::string address, token;
 };
-/// Serves the flight that it then listens to: serve_live (live_flight_option.h), or what refuses in a program that
-/// lacks it.
+/// Serves the flight that it then listens to: serve_live (live_flight_option.h), or what refuses in a program
+/// that lacks it.
 using LiveStarter = std::function<std::shared_ptr<core::RecordListener>(
     const flight::Mission&, const flight::FlightRequest&, const LiveArguments&)>;
 

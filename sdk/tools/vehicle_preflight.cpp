@@ -90,8 +90,7 @@ bool vehicle_preflight(const VehiclePreflightArguments& args) {
   m.clock = how.clock;
   m.machine = machine;
   if (mission.record.scans)
-    m.machine.scans_bytes =
-        preflight::scans_bytes_per_s(record) * mission.core.mission.max_flight_time_s;
+    m.machine.scans_bytes = preflight::scans_bytes_per_s(record) * mission.core.mission.max_flight_time_s;
   const std::vector<preflight::Check> checks = preflight::checks_of(m);
   if (!args.page.empty()) evaluation::write_whole_file(args.page, preflight::vehicle_page(m, checks));
   if (args.json) {

@@ -64,8 +64,8 @@ void Recorder::write(TimeNs t, const char* kind, const std::string& fields) {
 void Recorder::pose(const State& s) {
   const Quat& q = s.orientation;
   put(trajectory_, RecordPart::trajectory,
-      formatted("%.4f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", seconds(s.stamp), s.position.x(),
-                s.position.y(), s.position.z(), q.x(), q.y(), q.z(), q.w()));
+      formatted("%.4f %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n", seconds(s.stamp), s.position.x(), s.position.y(),
+                s.position.z(), q.x(), q.y(), q.z(), q.w()));
 }
 
 void Recorder::telemetry(const Telemetry& r) {

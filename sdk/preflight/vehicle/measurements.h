@@ -58,8 +58,8 @@ struct MotionFigures {
 struct MachineFacts {
   std::string run_folder;
   std::optional<std::uintmax_t> free_bytes;  // nothing if the folder cannot be examined
-  double scans_bytes = 0;       // what the flight's scans take, at most; 0 without record.scans
-  bool clock_plausible = true;  // the date is not before karst was built
+  double scans_bytes = 0;                    // what the flight's scans take, at most; 0 without record.scans
+  bool clock_plausible = true;               // the date is not before karst was built
   std::string policy, policy_problem;        // why it cannot be loaded; "" if it can
 };
 

@@ -355,14 +355,14 @@ void judge_machine(const MachineFacts& machine, Judge& judge) {
   constexpr double kGiB = 1024.0 * 1024 * 1024;
   const double free_gib = machine.free_bytes ? static_cast<double>(*machine.free_bytes) / kGiB : 0;
   const double scans_gib = machine.scans_bytes / kGiB;
-  judge.add(Part::machine, "free space for " + machine.run_folder,
-            machine.free_bytes ? format_text("%.1f GiB", free_gib) : "unknown",
-            scans_gib > 0 ? format_text("at least 4 GiB, and %.1f GiB for the scans", scans_gib)
-                          : "at least 4 GiB",
-            at_least(free_gib, 4 + scans_gib, 1 + scans_gib),
-            scans_gib > 0 ? "delete or move old runs, write to another disk (--out), or fly shorter or "
-                            "without record.scans"
-                          : "delete or move old runs, or write to another disk (--out)");
+  judge.add(
+      Part::machine, "free space for " + machine.run_folder,
+      machine.free_bytes ? format_text("%.1f GiB", free_gib) : "unknown",
+      scans_gib > 0 ? format_text("at least 4 GiB, and %.1f GiB for the scans", scans_gib) : "at least 4 GiB",
+      at_least(free_gib, 4 + scans_gib, 1 + scans_gib),
+      scans_gib > 0 ? "delete or move old runs, write to another disk (--out), or fly shorter or "
+                      "without record.scans"
+                    : "delete or move old runs, or write to another disk (--out)");
   judge.add(Part::machine, "date", machine.clock_plausible ? "plausible" : "before karst was built",
             "the present", watch_if(!machine.clock_plausible), "set the computer's clock");
   if (!machine.policy.empty())

@@ -20,8 +20,8 @@ TEST(Endpoint, LacksWhatIsNotSaid) {
 }
 
 TEST(Endpoint, WhatIsNoneIsRefusedByName) {
-  for (const char* bad : {"localhost", "1.2.3", "1.2.3.4:", "1.2.3.4:65536", "1.2.3.4:-1", "1.2.3.4:80x", "[::1",
-                          "[]:1", "[::1]8", "::1", "1.2.3.4:80:80", "999.1.1.1:5"}) {
+  for (const char* bad : {"localhost", "1.2.3", "1.2.3.4:", "1.2.3.4:65536", "1.2.3.4:-1", "1.2.3.4:80x",
+                          "[::1", "[]:1", "[::1]8", "::1", "1.2.3.4:80:80", "999.1.1.1:5"}) {
     try {
       endpoint_of(bad, "--live");
       ADD_FAILURE() << bad;
@@ -32,7 +32,8 @@ TEST(Endpoint, WhatIsNoneIsRefusedByName) {
 }
 
 TEST(Endpoint, TheLoopbackIsThisMachineAlone) {
-  for (const char* own : {"127.0.0.1", "127.8.9.1", "[::1]"}) EXPECT_TRUE(is_loopback(endpoint_of(own, ""))) << own;
+  for (const char* own : {"127.0.0.1", "127.8.9.1", "[::1]"})
+    EXPECT_TRUE(is_loopback(endpoint_of(own, ""))) << own;
   for (const char* others : {"0.0.0.0", "192.168.1.1", "[::]", "[fe80::1]"})
     EXPECT_FALSE(is_loopback(endpoint_of(others, ""))) << others;
 }

@@ -1,4 +1,5 @@
-// What a client is sent: the greeting, what it asks for, what it may know of earlier, and what it is told if it is slow.
+// What a client is sent: the greeting, what it asks for, what it may know of earlier, and what it is told if
+// it is slow.
 #include "sdk/live/client_session.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +22,8 @@ class Session : public testing::Test {
     session_.next();  // the greeting
   }
   void subscribe(std::uint32_t id, std::size_t channel) {
-    session_.receive(json{{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel}}}}}.dump());
+    session_.receive(
+        json{{"op", "subscribe"}, {"subscriptions", {{{"id", id}, {"channelId", channel}}}}}.dump());
   }
   void publish(const LiveMessage& m) {
     retained_.keep(m);

@@ -24,8 +24,8 @@ struct Record {
 };
 
 /// The lines of a file, without the columns' names.
-void add_lines(const fs::path& file, RecordPart part, const std::function<double(const std::string&)>& time_of,
-               std::vector<Record>& out) {
+void add_lines(const fs::path& file, RecordPart part,
+               const std::function<double(const std::string&)>& time_of, std::vector<Record>& out) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
     if (!line.starts_with("t_s") && !line.starts_with("stamp") && !line.starts_with('#'))
@@ -36,12 +36,14 @@ void add_lines(const fs::path& file, RecordPart part, const std::function<double
 std::vector<Record> record_of(const fs::path& run) {
   std::vector<Record> all;
   const auto first = [](const std::string& line) { return std::stod(line); };
-  add_lines(run / "events.jsonl", RecordPart::events,
-            [](const std::string& line) { return std::stod(line.substr(line.find("\"t\":") + 4)); }, all);
+  add_lines(
+      run / "events.jsonl", RecordPart::events,
+      [](const std::string& line) { return std::stod(line.substr(line.find("\"t\":") + 4)); }, all);
   add_lines(run / "trajectory.tum", RecordPart::trajectory, first, all);
   add_lines(run / "telemetry.csv", RecordPart::telemetry, first, all);
-  add_lines(run / "localization.csv", RecordPart::localization,
-            [](const std::string& line) { return std::stod(line.substr(line.find(',') + 1)); }, all);
+  add_lines(
+      run / "localization.csv", RecordPart::localization,
+      [](const std::string& line) { return std::stod(line.substr(line.find(',') + 1)); }, all);
   std::ifstream in(run / "map_growth.bin", std::ios::binary);
   for (std::string bytes(16, '\0'); in.read(bytes.data(), 16);) {
     std::int32_t ms = 0;
@@ -115,21 +117,21 @@ TEST_F(Followed, WhatGrowsIsToldWholeAsAnExportTellsItAtThatTime) {
 
 TEST_F(Followed, TheMessagesOfATopicNeverGoBackInTime) {
   for (const auto& [topic, messages] : followed(run_))
-    EXPECT_TRUE(std::is_sorted(messages.begin(), messages.end(),
-                               [](const auto& a, const auto& b) { return a.first < b.first; }))
-        << topic;
+    EXPECT_TRUE(std::is_sorted(messages.begin(), messages.end(), [](const auto& a, const auto& b) {
+      return a.first < b.first;
+    })) << topic;
 }
 
 TEST_F(Followed, WhatNoRecorderWritesIsRefusedAndLeavesTheRest) {
   std::size_t told = 0;
   FlightMessages messages(0.2, [&](const LiveMessage&) { ++told; });
-  for (const auto& [part, bytes] : std::vector<std::pair<RecordPart, std::string>>{
-           {RecordPart::events, "{\n"},
-           {RecordPart::events, "{\"kind\":\"phase\"}\n"},
-           {RecordPart::trajectory, "1 2 3\n"},
-           {RecordPart::telemetry, "x,explore\n"},
-           {RecordPart::localization, "1,y\n"},
-           {RecordPart::map_growth, "short"}})
+  for (const auto& [part, bytes] :
+       std::vector<std::pair<RecordPart, std::string>>{{RecordPart::events, "{\n"},
+                                                       {RecordPart::events, "{\"kind\":\"phase\"}\n"},
+                                                       {RecordPart::trajectory, "1 2 3\n"},
+                                                       {RecordPart::telemetry, "x,explore\n"},
+                                                       {RecordPart::localization, "1,y\n"},
+                                                       {RecordPart::map_growth, "short"}})
     EXPECT_THROW(messages.take(part, bytes), std::runtime_error) << bytes;
   EXPECT_EQ(told, 0u);
   messages.take(RecordPart::trajectory, "1 0 0 0 0 0 0 1\n");

@@ -52,7 +52,8 @@ TEST(Foxglove, OfTheSubprotocolsOfferedTheOneThatIsKnownIsSpoken) {
 }
 
 TEST(Foxglove, ARequestNamesSubscriptionsAndChannels) {
-  const Request r = request_of(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2},{"id":0,"channelId":9}]})");
+  const Request r =
+      request_of(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2},{"id":0,"channelId":9}]})");
   const auto& all = std::get<Subscribe>(r).all;
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].id, 5u);

@@ -26,7 +26,8 @@ using core::RecordPart;
 using namespace std::chrono_literals;
 using nlohmann::json;
 
-constexpr const char* kPose = "%d.0000 1.000000 2.000000 3.000000 0.00000000 0.00000000 0.00000000 1.00000000\n";
+constexpr const char* kPose =
+    "%d.0000 1.000000 2.000000 3.000000 0.00000000 0.00000000 0.00000000 1.00000000\n";
 
 /// What the server logs.
 class Log {
@@ -151,9 +152,11 @@ TEST_F(Live, AClientIsGreetedAndGetsWhatIsRecorded) {
   EXPECT_EQ(client.read_text()["name"], "karst");
   const json channels = client.read_text()["channels"];
   EXPECT_EQ(channels.size(), flight_topics().size());
-  const auto tf = std::find_if(channels.begin(), channels.end(), [](const json& c) { return c["topic"] == "/tf"; });
+  const auto tf =
+      std::find_if(channels.begin(), channels.end(), [](const json& c) { return c["topic"] == "/tf"; });
   ASSERT_NE(tf, channels.end());
-  client.write(json{{"op", "subscribe"}, {"subscriptions", {{{"id", 7}, {"channelId", (*tf)["id"]}}}}}.dump());
+  client.write(
+      json{{"op", "subscribe"}, {"subscriptions", {{{"id", 7}, {"channelId", (*tf)["id"]}}}}}.dump());
   client.write("garbage");
   EXPECT_EQ(client.read_text()["level"], 2);  // so the subscription has been taken
   pose(3);
@@ -228,7 +231,8 @@ TEST_F(Live, WithATokenNobodyGetsAnythingWithoutIt) {
   start(secret);
   for (const char* target : {"/", "/?token=", "/?token=long.enough-toke", "/?token=long.enough-tokeN"}) {
     EXPECT_THROW(Client(at(), target), beast::system_error) << target;
-    EXPECT_TRUE(answer_to("GET " + std::string(target) + " HTTP/1.1\r\nHost: x\r\n\r\n").starts_with("HTTP/1.1 401"));
+    EXPECT_TRUE(
+        answer_to("GET " + std::string(target) + " HTTP/1.1\r\nHost: x\r\n\r\n").starts_with("HTTP/1.1 401"));
   }
   EXPECT_EQ(Client(at(), "/?token=long.enough-token").read_text()["op"], "serverInfo");
   EXPECT_TRUE(answer_to("GET / HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer long.enough-token\r\n\r\n")
@@ -239,9 +243,12 @@ TEST_F(Live, GarbageHugeHeadersAndEndlessHandshakesAreClosed) {
   LiveSetup quick = setup();
   quick.limits.handshake = 200ms;
   start(quick);
-  EXPECT_FALSE(answer_to(std::string("\x16\x03\x01\x00\xff garbage\r\n\r\n", 20)).starts_with("HTTP/1.1 200"));
-  EXPECT_FALSE(answer_to("GET / HTTP/1.1\r\nX: " + std::string(100'000, 'x') + "\r\n\r\n").starts_with("HTTP/1.1 200"));
-  EXPECT_FALSE(answer_to("POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n").starts_with("HTTP/1.1 200"));
+  EXPECT_FALSE(
+      answer_to(std::string("\x16\x03\x01\x00\xff garbage\r\n\r\n", 20)).starts_with("HTTP/1.1 200"));
+  EXPECT_FALSE(answer_to("GET / HTTP/1.1\r\nX: " + std::string(100'000, 'x') + "\r\n\r\n")
+                   .starts_with("HTTP/1.1 200"));
+  EXPECT_FALSE(
+      answer_to("POST / HTTP/1.1\r\nContent-Length: 99999999999\r\n\r\n").starts_with("HTTP/1.1 200"));
   EXPECT_EQ(answer_to("GET / HT"), "");  // closed after the time for it
   EXPECT_EQ(Client(at()).read_text()["op"], "serverInfo");
 }
@@ -299,9 +306,8 @@ TEST_F(Live, AClientThatReadsNothingIsLeftAndTheOthersGoOn) {
   alive.follow("/tf");
   std::this_thread::sleep_for(200ms);
   for (int i = 0; i < 200; ++i)
-    flight_->listener().on_record(
-        RecordPart::events,
-        R"({"t":1.5,"kind":"log","text":")" + std::string(100'000, 'x') + "\"}\n");
+    flight_->listener().on_record(RecordPart::events,
+                                  R"({"t":1.5,"kind":"log","text":")" + std::string(100'000, 'x') + "\"}\n");
   pose(2);
   EXPECT_EQ(alive.next_message_ns(), 2'000'000'000u);
   EXPECT_TRUE(log_.has("it takes no message")) << log_.text();
@@ -316,9 +322,8 @@ TEST_F(Live, ASlowClientIsToldWhatItMisses) {
   slow.follow("/events");
   std::this_thread::sleep_for(200ms);
   for (int i = 0; i < 400; ++i)
-    flight_->listener().on_record(
-        RecordPart::events,
-        R"({"t":1.5,"kind":"log","text":")" + std::string(100'000, 'x') + "\"}\n");
+    flight_->listener().on_record(RecordPart::events,
+                                  R"({"t":1.5,"kind":"log","text":")" + std::string(100'000, 'x') + "\"}\n");
   std::this_thread::sleep_for(1500ms);
   const json told = slow.read_text();
   EXPECT_EQ(told["id"], "dropped");

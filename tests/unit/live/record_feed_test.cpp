@@ -16,7 +16,8 @@ TEST(RecordFeed, EachRecordArrivesOnceInOrderWithItsPart) {
   constexpr int kRecords = 100000;
   std::thread recorder([&] {
     for (int i = 0; i < kRecords; ++i)
-      feed.on_record(i % 2 ? RecordPart::events : RecordPart::map_growth, std::to_string(i) + std::string(i % 7, '.'));
+      feed.on_record(i % 2 ? RecordPart::events : RecordPart::map_growth,
+                     std::to_string(i) + std::string(i % 7, '.'));
     feed.on_close();
   });
   int next = 0;

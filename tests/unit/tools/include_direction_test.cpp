@@ -65,6 +65,13 @@ TEST(IncludeDirection, TheCheckKnowsTheHostOnly) {
   expect_none("sdk/check", {"plugins/", "policies/", "sdk/tools", "sdk/evaluation", "sdk/campaign"});
   expect_none("sdk/host", {"sdk/check"});
 }
+// A flight can be followed: it does not know by whom, and the core knows no sockets.
+TEST(IncludeDirection, WhatServesAFlightKnowsItsRecordOnly) {
+  expect_none("sdk/live", {"plugins/", "sdk/host", "sdk/campaign", "sdk/selection", "sdk/tuning",
+                           "sdk/flight", "sdk/tools", "CLI/"});
+  expect_none("sdk/flight", {"sdk/live"});
+  expect_none("core_stack", {"boost/asio", "boost/beast"});
+}
 // Maps are merged offline: nobody but a command asks for it.
 TEST(IncludeDirection, MapMergingKnowsNothingOfCampaignsAndFlights) {
   expect_none("sdk/map_merge",
