@@ -82,9 +82,10 @@ std::string recording_info_of(const core::LidarModel& lidar) {
   return core::format_text(
       "scans \"*.pcd\"\nstamp { from names unit ns of start }\ntime { unit ns of start period \"%.9g s\" }\n"
       "lidar { position \"%.9g %.9g %.9g\" rotation \"%s\" min_range \"%.9g m\" max_range \"%.9g m\" }\n"
-      "rings { by field }\nimu { file imu.csv columns \"t ax ay az wx wy wz\" }\n",
+      "rings { by %s }\nimu { file imu.csv columns \"t ax ay az wx wy wz\" }\n",
       core::seconds(lidar.period), p.x(), p.y(), p.z(), rotation_text(lidar.T_body_lidar.orientation).c_str(),
-      static_cast<double>(lidar.min_range_m), static_cast<double>(lidar.max_range_m));
+      static_cast<double>(lidar.min_range_m), static_cast<double>(lidar.max_range_m),
+      lidar.has_rings() ? "field" : "none");
 }
 
 }  // namespace karst::flight

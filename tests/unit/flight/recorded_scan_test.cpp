@@ -90,12 +90,17 @@ TEST(RecordedScan, AMountingThatLooksStraightDownIsKept) {
             1e-6);
 }
 
-TEST(RecordedScan, OfALidarWithoutRingsHasNoRings) {
+LidarScan scan_without_rings() {
   auto model = std::make_shared<core::LidarModel>();
   model->elevation_rad = {0.5f, -0.1f};
   LidarScan scan{500 * kMillisecond, model, {1.0f, 2.0f}, {0.5f, 0.25f}};
   scan.time_s = {-0.05f, 0};
   scan.direction = {{1, 0, 0}, {0, 1, 0}};
+  return scan;
+}
+
+TEST(RecordedScan, OfALidarWithoutRingsHasNoRings) {
+  const LidarScan scan = scan_without_rings();
   const std::string file = pcd_of(scan);
   EXPECT_NE(file.find("FIELDS x y z intensity t\n"), std::string::npos) << file;
   const test::Folder folder;
@@ -104,6 +109,15 @@ TEST(RecordedScan, OfALidarWithoutRingsHasNoRings) {
   EXPECT_EQ(read.points[1].position, core::Vec3f(0, 2, 0));
   EXPECT_NEAR(read.points[0].time, 50e6, 2);  // ns since the sweep began; floats give it
   EXPECT_NEAR(read.points[1].time, 100e6, 2);
+}
+
+TEST(RecordedScan, OfALidarWithoutRingsIsReadBackWithItsRecordingFile) {
+  const LidarScan scan = scan_without_rings();
+  const test::Folder folder;
+  write(folder, scan);
+  const core::Sweep read = replay::read_sweep(replay::open_recording(folder.path(), ""), 0);
+  EXPECT_FALSE(read.has_rings);
+  EXPECT_EQ(read.points.size(), 2u);
 }
 
 TEST(RecordedScan, AScanThatDoesNotFitItsModelIsNone) {

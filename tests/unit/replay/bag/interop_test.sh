@@ -4,14 +4,8 @@
 # Skipped (77) without node, or where npm cannot reach the packages.
 set -u
 program=$1; folder=$2; here=$(dirname "$0")
-command -v node >/dev/null || { echo "skipped: no node"; exit 77; }
-if [ ! -d "$folder/node_modules/zstd-codec" ]; then
-  command -v npm >/dev/null || { echo "skipped: no npm"; exit 77; }
-  mkdir -p "$folder"
-  (cd "$folder" && timeout 120 npm install --silent --no-save --prefix . @mcap/core@2.2.2 \
-    @foxglove/rosmsg2-serialization@3.1.0 @foxglove/rosmsg@5.0.5 lz4-napi@2.10.0 zstd-codec@0.1.5) >/dev/null 2>&1 ||
-    { echo "skipped: npm cannot install @mcap/core and others"; exit 77; }
-fi
+. "$here/node_packages.sh"
+node_packages "$folder"
 work=$(mktemp -d); trap 'rm -rf "$work"' EXIT
 "$program" files "$work/scans" || exit 1
 mkdir "$work/bags"
