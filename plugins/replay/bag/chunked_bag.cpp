@@ -10,6 +10,17 @@
 namespace karst::replay {
 namespace {
 
+/// Bytes that a chunk of `bytes` can take when it is stored: what cannot be compressed grows by a hundredth
+/// at most.
+std::uint64_t most_stored(const ChunkPlace& place) {
+  if (place.bytes == 0) return kMaxChunkBytes;  // not known
+  const std::uint64_t most =
+      place.compression == Compression::none
+          ? place.bytes
+          : place.bytes + std::min<std::uint64_t>(place.bytes / 64, kMaxChunkBytes) + 65536;
+  return std::min<std::uint64_t>(most, kMaxChunkBytes);
+}
+
 // Chunks of recorders have about a megabyte, and few of them overlap.
 constexpr std::size_t kMaxOpenChunkBytes = 64u << 20;
 
@@ -40,8 +51,9 @@ std::optional<std::size_t> ChunkedBag::connection_of(std::uint32_t number) const
   return found == by_number_.end() ? std::nullopt : std::optional(found->second);
 }
 
-bool ChunkedBag::knows_chunk_at(std::uint64_t offset) const {
-  return std::any_of(chunks_.begin(), chunks_.end(), [&](const ChunkPlace& c) { return c.offset == offset; });
+void ChunkedBag::add_chunk(ChunkPlace place) {
+  records_.insert(place.record);
+  chunks_.push_back(place);
 }
 
 LoadedChunk ChunkedBag::load(std::size_t chunk, bool log) {
@@ -53,17 +65,17 @@ LoadedChunk ChunkedBag::load(std::size_t chunk, bool log) {
                   reason);
   };
   LoadedChunk loaded;
-  std::string stored = read_at(place.offset, place.size);
+  const std::uint64_t most = most_stored(place);
+  std::string stored = read_at(place.offset, std::min(place.size, most));
   std::string problem(place.cut);
-  if (place.compression == Compression::none && stored.size() > kMaxChunkBytes) {
-    report("is larger than " + std::to_string(kMaxChunkBytes >> 20) + " MiB");
-    return loaded;
-  }
+  if (problem.empty() && place.size > most)
+    problem = "announces " + std::to_string(place.size) + " bytes, more than it can have";
   Decompressed d = place.compression == Compression::none
                        ? Decompressed{std::move(stored), ""}
                        : decompress(place.compression, stored, place.bytes);
   if (problem.empty()) problem = d.problem;
-  if (problem.empty() && place.crc != 0) {
+  const bool whole = place.cut.empty() && (d.problem.empty() || d.bytes.size() == place.bytes);
+  if (whole && place.crc != 0) {
     const auto crc =
         crc32(0, reinterpret_cast<const Bytef*>(d.bytes.data()), static_cast<uInt>(d.bytes.size()));
     if (crc != place.crc) {

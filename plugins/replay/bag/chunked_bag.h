@@ -2,6 +2,7 @@
 #pragma once
 #include <fstream>
 #include <map>
+#include <unordered_set>
 
 #include "plugins/replay/bag/bag.h"
 #include "plugins/replay/bag/chunk_merge.h"
@@ -11,6 +12,7 @@ namespace karst::replay {
 
 /// Where a chunk's records are in the file, or messages that lie outside of chunks, one after another.
 struct ChunkPlace {
+  std::uint64_t record = 0;            // where its record begins
   std::uint64_t offset = 0, size = 0;  // of the stored bytes
   Compression compression = Compression::none;
   std::uint64_t bytes = 0;            // decompressed, as announced
@@ -45,9 +47,9 @@ class ChunkedBag : public Bag {
   void connect(std::uint32_t number, Connection connection);
   std::optional<std::size_t> connection_of(std::uint32_t number) const;
 
-  void add_chunk(ChunkPlace place) { chunks_.push_back(place); }
-  /// True if a chunk begins there.
-  bool knows_chunk_at(std::uint64_t offset) const;
+  void add_chunk(ChunkPlace place);
+  /// True if a chunk's record begins there.
+  bool knows_chunk_at(std::uint64_t record) const { return records_.contains(record); }
   /// Reads every chunk once whose start is not known, or all of them, for connections and start times.
   void rebuild_index(bool all);
   /// After the last chunk was added. Throws InputError if there is nothing to read.
@@ -64,6 +66,7 @@ class ChunkedBag : public Bag {
   std::vector<Connection> connections_;
   std::map<std::uint32_t, std::size_t> by_number_;
   std::vector<ChunkPlace> chunks_;
+  std::unordered_set<std::uint64_t> records_;  // of these chunks
   std::vector<bool> wanted_;
   std::optional<ChunkMerge> merge_;
   FaultLog faults_;

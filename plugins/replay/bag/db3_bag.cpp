@@ -86,8 +86,11 @@ class Db3Bag final : public Bag {
                                        SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
     Database db(raw, &sqlite3_close);
     if (result != SQLITE_OK) throw core::InputError(path, "", sqlite3_errstr(result));
-    // A database that somebody else wrote: no functions of its schema are run, and damage is found.
-    sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+    // A database that somebody else wrote: no functions of its schema are run, and damage is found. A file
+    // with fewer pages than it announces is read as far as it goes only with a writable schema; nothing is
+    // written.
+    sqlite3_db_config(raw, SQLITE_DBCONFIG_DEFENSIVE, 0, nullptr);
+    sqlite3_db_config(raw, SQLITE_DBCONFIG_WRITABLE_SCHEMA, 1, nullptr);
     sqlite3_db_config(raw, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_limit(raw, SQLITE_LIMIT_LENGTH, 1 << 28);
     sqlite3_exec(raw, "PRAGMA cell_size_check=1; PRAGMA cache_size=-8000; PRAGMA temp_store=1", nullptr,

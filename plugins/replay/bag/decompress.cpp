@@ -38,6 +38,11 @@ class GrowingOutput {
 const std::string kTooLarge = "is larger than " + std::to_string(kMaxChunkBytes >> 20) + " MiB";
 constexpr const char* kCut = "its compressed data are cut";
 
+/// "" if the compressed data end where the chunk does.
+std::string beyond_end(std::size_t left) {
+  return left == 0 ? "" : std::to_string(left) + " bytes follow its compressed data";
+}
+
 std::string bunzip(Bytes in, GrowingOutput& out) {
   bz_stream stream{};
   if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) return "bz2 cannot be set up";
@@ -52,7 +57,7 @@ std::string bunzip(Bytes in, GrowingOutput& out) {
     const unsigned input = stream.avail_in;
     const int result = BZ2_bzDecompress(&stream);
     out.use(room - stream.avail_out);
-    if (result == BZ_STREAM_END) return "";
+    if (result == BZ_STREAM_END) return beyond_end(stream.avail_in);
     if (result != BZ_OK) return "is no intact bz2 data";
     if (stream.avail_out == room && stream.avail_in == input) return kCut;
   }
@@ -70,7 +75,7 @@ std::string unlz4(Bytes in, GrowingOutput& out) {
     if (LZ4F_isError(result)) return std::string("is no intact lz4 frame: ") + LZ4F_getErrorName(result);
     out.use(given);
     at += taken;
-    if (result == 0) return "";
+    if (result == 0) return beyond_end(in.size() - at);
     if (given == 0 && taken == 0) return kCut;
   }
 }
@@ -86,7 +91,7 @@ std::string unzstd(Bytes in, GrowingOutput& out) {
     const std::size_t before = input.pos, result = ZSTD_decompressStream(stream.get(), &output, &input);
     if (ZSTD_isError(result)) return std::string("is no intact zstd frame: ") + ZSTD_getErrorName(result);
     out.use(output.pos);
-    if (result == 0) return "";
+    if (result == 0) return beyond_end(input.size - input.pos);
     if (output.pos == 0 && input.pos == before) return kCut;
   }
 }

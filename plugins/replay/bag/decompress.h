@@ -22,8 +22,8 @@ struct Decompressed {
   std::string problem;  // "" if that is all of it
 };
 
-/// lz4 and zstd are frames, bz2 is a stream. `declared` is the number of bytes expected; it only serves to
-/// check, and memory grows with the real number.
+/// lz4 and zstd are frames, bz2 is a stream; nothing may follow its end. `declared` is the number of bytes
+/// expected; it only serves to check, and memory grows with the real number.
 Decompressed decompress(Compression compression, Bytes compressed, std::uint64_t declared);
 
 }  // namespace karst::replay

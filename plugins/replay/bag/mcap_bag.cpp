@@ -112,7 +112,7 @@ class McapBag final : public ChunkedBag {
         if (opcode == 0) throw MalformedError("a record without an opcode", 0);
         const std::uint64_t left = file_bytes() - offset - kHead;
         if (opcode == kMessage && length <= left) {
-          if (!loose) loose = ChunkPlace{offset, 0, Compression::none, 0, 0, time_of(offset), ""};
+          if (!loose) loose = ChunkPlace{offset, offset, 0, Compression::none, 0, 0, time_of(offset), ""};
           loose->bytes = loose->size = offset + kHead + length - loose->offset;
           if (loose->size >= kLooseBytes) end_loose();
         } else {
@@ -131,6 +131,7 @@ class McapBag final : public ChunkedBag {
           if (opcode == kChunk) channels_outside_ = 0;  // only those after the last chunk are a summary
           if (opcode == kFooter) {
             has_summary_ = channels_outside_ > 0;
+            use_summary();
             return true;
           }
         }
@@ -141,7 +142,7 @@ class McapBag final : public ChunkedBag {
     } catch (const MalformedError& e) {
       end_loose();
       fault(offset, e.what());
-      use_summary(offset);
+      use_summary();
     }
     return false;
   }
@@ -156,6 +157,7 @@ class McapBag final : public ChunkedBag {
     const std::string head = read_at(offset + kHead, std::min<std::uint64_t>(length, 64));
     ByteCursor at{Bytes(head)};
     ChunkPlace place;
+    place.record = offset;
     place.start = static_cast<core::TimeNs>(std::min(at.take<std::uint64_t>(), kMaxMcapTime));
     at.take<std::uint64_t>();  // end
     place.bytes = at.take<std::uint64_t>();
@@ -177,8 +179,9 @@ class McapBag final : public ChunkedBag {
     add_chunk(place);
   }
 
-  /// Chunks after a damaged record, as far as the summary at the end of the file tells of them.
-  void use_summary(std::uint64_t damage) try {
+  /// Chunks that only the summary at the end of the file tells of: a record before them has
+  /// a wrong length.
+  void use_summary() try {
     const std::uint64_t tail = kFooterBytes + kMcapMagic.size();
     if (file_bytes() < tail || read_at(file_bytes() - kMcapMagic.size(), 8) != kMcapMagic) return;
     const std::string footer = read_at(file_bytes() - tail, kFooterBytes);
@@ -194,7 +197,7 @@ class McapBag final : public ChunkedBag {
       if (opcode != kChunkIndex) continue;
       ByteCursor index(body, 16);
       const auto offset = index.take<std::uint64_t>(), length = index.take<std::uint64_t>();
-      if (offset <= damage || length < kHead || offset > file_bytes() || length > file_bytes() - offset)
+      if (knows_chunk_at(offset) || length < kHead || offset > file_bytes() || length > file_bytes() - offset)
         continue;
       const std::string head = read_at(offset, kHead);
       ByteCursor h{Bytes(head)};

@@ -16,6 +16,7 @@ enum RosbagOpcode : std::uint8_t {
 };
 constexpr std::string_view kRosbagMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kMaxHeaderBytes = 1u << 20, kMaxConnectionBytes = 16u << 20;
+constexpr std::uint64_t kChunkHeadBytes = 4096;  // of a chunk's header, with room to spare
 constexpr std::uint64_t kLooseRunBytes = 4u << 20;
 
 /// The named fields of a record's header.
@@ -115,7 +116,7 @@ class Rosbag1 final : public ChunkedBag {
           // What stands outside of a chunk is of a chunk whose length was never written.
           if (!loose) {
             end_chunk();
-            loose = ChunkPlace{offset, 0, Compression::none, 0, 0, std::nullopt, ""};
+            loose = ChunkPlace{offset, offset, 0, Compression::none, 0, 0, std::nullopt, ""};
           }
           loose->bytes = loose->size = std::min(begin + size, file_bytes()) - loose->offset;
           if (loose->size >= kLooseRunBytes) end_chunk();
@@ -140,7 +141,10 @@ class Rosbag1 final : public ChunkedBag {
         offset = begin + size;
       }
       end_chunk();
-      if (index != 0 && index < file_bytes()) return true;
+      if (index != 0 && index < file_bytes()) {
+        use_index(index);
+        return true;
+      }
       fault(file_bytes(), "the bag has no index: it was not closed, or is cut");
     } catch (const MalformedError& e) {
       if (chunk && chunk->size == 0 && offset == chunk->offset) {
@@ -150,7 +154,7 @@ class Rosbag1 final : public ChunkedBag {
       }
       end_chunk();
       fault(offset, e.what());
-      if (index > std::max(offset, last_chunk) && index < file_bytes()) use_index(index, offset);
+      if (index > last_chunk && index < file_bytes()) use_index(index);
     }
     return false;
   }
@@ -164,7 +168,8 @@ class Rosbag1 final : public ChunkedBag {
                         "\", which is none of none, bz2 and lz4");
       return std::nullopt;
     }
-    ChunkPlace place{begin, size, *compression, fields.number<std::uint32_t>("size"), 0, std::nullopt, ""};
+    ChunkPlace place{record, begin,        size, *compression, fields.number<std::uint32_t>("size"),
+                     0,      std::nullopt, ""};
     if (size > left) place.cut = "it is cut";
     if (size == 0 && place.bytes == 0) place.cut = "it was not closed";
     return place;
@@ -179,8 +184,9 @@ class Rosbag1 final : public ChunkedBag {
     chunk.start = std::min(chunk.start.value_or(time), time);
   }
 
-  /// Chunks after a damaged record, as far as the index at the end of the file tells of them.
-  void use_index(std::uint64_t index, std::uint64_t damage) try {
+  /// Chunks that only the index at the end of the file tells of: a record before them has a
+  /// wrong length.
+  void use_index(std::uint64_t index) try {
     if (file_bytes() - index > kMaxChunkBytes) return;
     const std::string records = read_at(index, file_bytes() - index);
     for (ByteCursor at{Bytes(records)}; at.left() > 0;) {
@@ -190,21 +196,27 @@ class Rosbag1 final : public ChunkedBag {
       if (opcode == kConnectionData) take_connection(fields, data);
       if (opcode != kChunkInfo) continue;
       const auto position = fields.number<std::uint64_t>("chunk_pos");
-      if (position <= damage || position >= index) continue;
-      const std::string head = read_at(position, kMaxHeaderBytes);
-      ByteCursor chunk{Bytes(head)};
-      const HeaderFields of_chunk(chunk.take_counted());
-      if (of_chunk.number<std::uint8_t>("op") != kChunkData) continue;
-      const auto size = chunk.take<std::uint32_t>();
-      const std::uint64_t begin = position + chunk.at();
-      if (knows_chunk_at(begin)) continue;
-      if (auto place = chunk_of(of_chunk, position, begin, size, file_bytes() - begin)) {
+      if (position >= index || knows_chunk_at(position)) continue;
+      if (auto place = chunk_at(position)) {
         place->start = fields.time("start_time");
         add_chunk(*place);
       }
     }
   } catch (const MalformedError& e) {
     fault(index, std::string("the index: ") + e.what());
+  }
+
+  /// nullopt if the index is wrong, and no chunk begins there.
+  std::optional<ChunkPlace> chunk_at(std::uint64_t position) try {
+    const std::string head = read_at(position, kChunkHeadBytes);
+    ByteCursor at{Bytes(head)};
+    const HeaderFields fields(at.take_counted());
+    if (fields.number<std::uint8_t>("op") != kChunkData) return std::nullopt;
+    const auto size = at.take<std::uint32_t>();
+    const std::uint64_t begin = position + at.at();
+    return chunk_of(fields, position, begin, size, file_bytes() - begin);
+  } catch (const MalformedError&) {
+    return std::nullopt;
   }
 };
 

@@ -1,6 +1,8 @@
 // Bags with wrong bytes anywhere: what is intact is read, the rest is named, and nothing else happens.
 #include <gtest/gtest.h>
 
+#include <cstring>
+
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
 #include "core_stack/common/random.h"
@@ -74,6 +76,74 @@ TEST(BagDamage, WrongBytesAnywhereAreAnErrorOrLeaveTheRestReadable) {
     // Without a summary, only the first chunk tells the topics.
     EXPECT_GT(opened, f.name == "f.mcap" ? 15 : 30) << f.name;
   }
+}
+
+template <class T>
+T number_at(const std::string& bytes, std::size_t at) {
+  T value{};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+template <class T>
+void set_number(std::string& bytes, std::size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+/// The second chunk's length leads over the third to the end of the fourth.
+std::string with_long_chunk_of_rosbag(std::string bytes) {
+  std::vector<std::size_t> lengths, ends;  // of the chunks
+  for (std::size_t at = 13; at < bytes.size();) {
+    const std::size_t length = at + 4 + number_at<std::uint32_t>(bytes, at),
+                      end = length + 4 + number_at<std::uint32_t>(bytes, length);
+    if (bytes.substr(at, length - at).find("op=\5") != std::string::npos) {
+      lengths.push_back(length);
+      ends.push_back(end);
+    }
+    at = end;
+  }
+  set_number(bytes, lengths.at(1), static_cast<std::uint32_t>(ends.at(3) - lengths.at(1) - 4));
+  return bytes;
+}
+std::string with_long_chunk_of_mcap(std::string bytes) {
+  std::vector<std::size_t> records, ends;  // of the chunks
+  for (std::size_t at = 8; at + 9 < bytes.size();) {
+    const std::size_t end = at + 9 + number_at<std::uint64_t>(bytes, at + 1);
+    if (bytes[at] == 6) {
+      records.push_back(at);
+      ends.push_back(end);
+    }
+    at = end;
+  }
+  const std::size_t at = records.at(1), name = number_at<std::uint32_t>(bytes, at + 9 + 28),
+                    size = at + 9 + 32 + name;
+  set_number(bytes, at + 1, static_cast<std::uint64_t>(ends.at(3) - at - 9));
+  set_number(bytes, size, static_cast<std::uint64_t>(ends.at(3) - size - 8));
+  return bytes;
+}
+
+TEST(BagDamage, ChunksInsideTheLengthThatAnotherAnnouncesAreRead) {
+  Folder dir;
+  for (const Files& f : small_bags(dir)) {
+    if (f.name >= "f.mcap") continue;  // without an index
+    const std::string path = dir.write(f.name, f.name.ends_with(".bag") ? with_long_chunk_of_rosbag(f.bytes)
+                                                                        : with_long_chunk_of_mcap(f.bytes));
+    EXPECT_EQ(read_all(path), 100) << f.name;
+    const auto bag = open_bag(path);
+    while (bag->next()) continue;
+    EXPECT_EQ(bag->faults().count(), 1u) << f.name;
+  }
+}
+
+TEST(BagDamage, OfADatabaseThatIsCutTheBeginningIsRead) {
+  Folder dir;
+  const std::string bytes = small_bags(dir).back().bytes;
+  const std::string path = dir.write("cut.db3", bytes.substr(0, bytes.size() / 2 / 4096 * 4096));
+  const int count = read_all(path);
+  EXPECT_GT(count, 20);
+  EXPECT_LT(count, 100);
+  const auto bag = open_bag(path);
+  while (bag->next()) continue;
+  EXPECT_GT(bag->faults().count(), 0u);
 }
 
 // The first read beyond the record, the second never ended: its pages lead in a circle.
