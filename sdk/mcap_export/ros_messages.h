@@ -319,6 +319,18 @@ struct MagneticField {
   }
 };
 
+struct FluidPressure {
+  static constexpr const char* kType = "sensor_msgs/FluidPressure";
+  Header header;
+  double fluid_pressure = 0;
+  double variance = 0;
+  static constexpr auto members() {
+    return std::make_tuple(Field{"header", &FluidPressure::header},
+                           Field{"fluid_pressure", &FluidPressure::fluid_pressure},
+                           Field{"variance", &FluidPressure::variance});
+  }
+};
+
 struct UVCoordinate {
   static constexpr const char* kType = "visualization_msgs/UVCoordinate";
   float u = 0;

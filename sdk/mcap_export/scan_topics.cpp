@@ -1,5 +1,8 @@
 #include "sdk/mcap_export/scan_topics.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core_stack/common/error.h"
 #include "plugins/replay/recording.h"
 #include "sdk/evaluation/record/table.h"
@@ -112,6 +115,23 @@ Topic compass_topic(const fs::path& file, const FlightClock& clock, std::vector<
   });
 }
 
+/// Pressure at a height above sea level in the troposphere of the International Standard Atmosphere (ISO
+/// 2533): a barometer tells the height above where it was switched on by the same law.
+double standard_pressure_pa(double height_m) {
+  constexpr double kSeaLevel_pa = 101325, kSeaLevel_k = 288.15, kLapse_kpm = 0.0065, kExponent = 5.25588;
+  return kSeaLevel_pa * std::pow(std::max(0.0, 1 - kLapse_kpm * height_m / kSeaLevel_k), kExponent);
+}
+
+Topic barometer_topic(const fs::path& file, const FlightClock& clock, std::vector<std::string>& problems) {
+  auto table = std::make_shared<const evaluation::Table>(evaluation::read_table(file, {}, problems));
+  const std::vector<double>*t = table->column("t"), *height = table->column("height_m");
+  const std::size_t count = t && height ? table->rows : 0;
+  return topic_of<ros::FluidPressure>("/barometer", clock, count, [table, clock, t, height](std::size_t i) {
+    return std::pair((*t)[i], ros::FluidPressure{
+                                  {clock.stamp((*t)[i]), kBodyFrame}, standard_pressure_pa((*height)[i]), 0});
+  });
+}
+
 }  // namespace
 
 std::vector<Topic> scan_topics(const evaluation::RunRecord& run, const FlightClock& clock,
@@ -132,6 +152,8 @@ std::vector<Topic> scan_topics(const evaluation::RunRecord& run, const FlightClo
                   clock, problems));
   });
   topics.push_back(compass_topic(folder / "compass.csv", clock, problems));
+  if (fs::exists(folder / "barometer.csv"))
+    topics.push_back(barometer_topic(folder / "barometer.csv", clock, problems));
   return topics;
 }
 

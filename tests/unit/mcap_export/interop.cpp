@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Two scans of two points each, IMU samples and a compass, as record.scans has them.
+/// Two scans of two points each, IMU samples, a compass and a barometer, as record.scans has them.
 void write_scans(const fs::path& folder) {
   fs::create_directories(folder);
   std::ofstream(folder / "recording.info")
@@ -22,6 +22,7 @@ void write_scans(const fs::path& folder) {
   std::ofstream(folder / "imu.csv") << "t,ax,ay,az,wx,wy,wz\n0.005,0.1,0.2,9.8,0.01,0.02,0.03\n"
                                        "0.010,0.1,0.2,9.9,0.04,0.05,0.06\n";
   std::ofstream(folder / "compass.csv") << "t,x_ut,y_ut,z_ut\n0.02,20,1,-40\n";
+  std::ofstream(folder / "barometer.csv") << "t,height_m\n0.02,0.1\n0.06,-1.25\n";
   for (const char* name : {"000000000000000.pcd", "000000100000000.pcd"}) {
     std::string points;
     for (int i = 0; i < 2; ++i) {

@@ -191,6 +191,15 @@ if (existsSync(folder)) {
   check(of('/imu').length === imu.length, `/imu has ${of('/imu').length} of ${imu.length} samples`);
   of('/imu').forEach((m, i) => check(near(seconds(m.header.stamp), imu[i][0] + epoch, 1e-6) &&
     near(m.linear_acceleration.z, imu[i][3], 1e-9) && near(m.angular_velocity.x, imu[i][4], 1e-9), `imu ${i}`));
+  const compass = lines('scans/compass.csv').slice(1).map((l) => l.split(',').map(Number));
+  check(of('/compass').length === compass.length, `/compass has ${of('/compass').length} of ${compass.length} samples`);
+  of('/compass').forEach((m, i) => check(near(seconds(m.header.stamp), compass[i][0] + epoch, 1e-6) &&
+    ['x', 'y', 'z'].every((a, k) => near(m.magnetic_field[a] * 1e6, compass[i][1 + k], 1e-9)), `compass ${i}`));
+  const barometer = lines('scans/barometer.csv').slice(1).map((l) => l.split(',').map(Number));
+  check(of('/barometer').length === barometer.length, `/barometer has ${of('/barometer').length} of ${barometer.length}`);
+  const height = (pascal) => 288.15 / 0.0065 * (1 - (pascal / 101325) ** (1 / 5.25588));
+  of('/barometer').forEach((m, i) => check(near(seconds(m.header.stamp), barometer[i][0] + epoch, 1e-6) &&
+    near(height(m.fluid_pressure), barometer[i][1], 1e-6), `barometer ${i}`));
   const {readdirSync} = await import('node:fs');
   const names = readdirSync(folder).filter((n) => n.endsWith('.pcd')).sort();
   check(of('/points').length === names.length, `/points has ${of('/points').length} of ${names.length} scans`);
