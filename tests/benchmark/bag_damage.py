@@ -85,6 +85,8 @@ def mcap_damages(path, _):
     yield "a chunk announces 2^40 bytes decompressed", Patched(path, [(middle + 9 + 16, struct.pack("<Q", 1 << 40))]), n - 1
     yield "all chunks announce 2^40 bytes decompressed", Patched(
         path, [(c + 9 + 16, struct.pack("<Q", 1 << 40)) for c in chunks]), n
+    yield "all chunks announce 10 bytes decompressed", Patched(
+        path, [(c + 9 + 16, struct.pack("<Q", 10)) for c in chunks]), n
     yield "a chunk's record announces 2^60 bytes", Patched(path, [(middle + 1, struct.pack("<Q", 1 << 60))]), n - 1
     # The lie ends at a record.
     far = chunks[len(chunks) // 2 + len(chunks) // 4]
@@ -113,6 +115,8 @@ def rosbag_damages(path, _):
     yield "a chunk announces 2^32 - 1 bytes decompressed", Patched(path, [(declared, b"\xff" * 4)]), n - 1
     yield "all chunks announce 2^32 - 1 bytes decompressed", Patched(
         path, [(r + 4 + h.index(b"size=") + 5, b"\xff" * 4) for r, h, _ in chunks]), n
+    yield "all chunks announce 10 bytes decompressed", Patched(
+        path, [(r + 4 + h.index(b"size=") + 5, struct.pack("<I", 10)) for r, h, _ in chunks]), n
     yield "a chunk's length is 2^32 - 1", Patched(path, [(length, b"\xff" * 4)]), n - 1
     far = chunks[n // 2 + n // 4][0]
     yield "a chunk's length leads to three quarters of the file", Patched(

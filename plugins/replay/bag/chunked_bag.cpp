@@ -10,18 +10,22 @@
 namespace karst::replay {
 namespace {
 
-/// Bytes that a chunk of `bytes` can take when it is stored: what cannot be compressed grows by a hundredth
-/// at most.
+/// Chunks of recorders have about a megabyte: up to this size their length is believed.
+constexpr std::uint64_t kBelievedBytes = 16u << 20;
+
+/// Bytes of the file that are read of a chunk at most. Compression makes nothing larger by more than a
+/// hundredth.
 std::uint64_t most_stored(const ChunkPlace& place) {
-  if (place.bytes == 0) return kMaxChunkBytes;  // not known
-  const std::uint64_t most =
-      place.compression == Compression::none
-          ? place.bytes
-          : place.bytes + std::min<std::uint64_t>(place.bytes / 64, kMaxChunkBytes) + 65536;
-  return std::min<std::uint64_t>(most, kMaxChunkBytes);
+  const std::uint64_t contents = std::min<std::uint64_t>(place.bytes, kMaxChunkBytes);
+  return std::clamp<std::uint64_t>(contents + contents / 64, kBelievedBytes, kMaxChunkBytes);
 }
 
-// Chunks of recorders have about a megabyte, and few of them overlap.
+std::uint32_t crc_of(Bytes bytes) {
+  return static_cast<std::uint32_t>(
+      crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
+}
+
+// Few chunks overlap.
 constexpr std::size_t kMaxOpenChunkBytes = 64u << 20;
 
 }  // namespace
@@ -75,10 +79,13 @@ LoadedChunk ChunkedBag::load(std::size_t chunk, bool log) {
                        : decompress(place.compression, stored, place.bytes);
   if (problem.empty()) problem = d.problem;
   const bool whole = place.cut.empty() && (d.problem.empty() || d.bytes.size() == place.bytes);
-  if (whole && place.crc != 0) {
-    const auto crc =
-        crc32(0, reinterpret_cast<const Bytef*>(d.bytes.data()), static_cast<uInt>(d.bytes.size()));
-    if (crc != place.crc) {
+  if (whole && place.crc != 0 && crc_of(d.bytes) != place.crc) {
+    // Of two lengths that differ, the check sum tells the right one.
+    const bool longer = d.bytes.size() > place.bytes;
+    if (longer && crc_of(Bytes(d.bytes).first(place.bytes)) == place.crc) {
+      d.bytes.resize(place.bytes);
+      if (problem.empty()) problem = "more bytes follow than it announces";
+    } else {
       report("its check sum is wrong: none of its messages is used");
       take_descriptions(d.bytes);
       return loaded;

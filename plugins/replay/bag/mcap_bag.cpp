@@ -47,6 +47,7 @@ class McapBag final : public ChunkedBag {
       const auto opcode = at.take<std::uint8_t>();
       const auto length = at.take<std::uint64_t>();
       const Bytes record = at.take_bytes(length);
+      if (opcode == kChunk) throw MalformedError("a chunk begins inside of the chunk", begin);
       if (opcode == kMessage) {
         take_message(record, begin + kHead, messages);
       } else {

@@ -70,6 +70,7 @@ class Rosbag1 final : public ChunkedBag {
       const HeaderFields fields(at.take_counted());
       const Bytes data = at.take_counted();
       const auto opcode = fields.number<std::uint8_t>("op");
+      if (opcode == kChunkData) throw MalformedError("a chunk begins inside of the chunk", begin);
       if (opcode == kConnectionData) take_connection(fields, data);
       if (opcode != kMessageData) continue;
       const auto number = fields.number<std::uint32_t>("conn");

@@ -134,6 +134,29 @@ TEST(BagDamage, ChunksInsideTheLengthThatAnotherAnnouncesAreRead) {
   }
 }
 
+/// The second chunk says that it holds 10 bytes, decompressed.
+std::string with_small_chunk(const Files& f) {
+  std::string bytes = f.bytes;
+  if (f.name.ends_with(".bag")) {
+    const std::size_t first = bytes.find("size=", bytes.find("compression=")),
+                      second = bytes.find("size=", bytes.find("compression=", first));
+    set_number(bytes, second + 5, std::uint32_t{10});
+    return bytes;
+  }
+  int chunk = 0;
+  for (std::size_t at = 8; at + 9 < bytes.size(); at += 9 + number_at<std::uint64_t>(bytes, at + 1))
+    if (bytes[at] == 6 && ++chunk == 2) set_number(bytes, at + 9 + 16, std::uint64_t{10});
+  return bytes;
+}
+
+TEST(BagDamage, AChunkThatAnnouncesTooFewBytesIsRead) {
+  Folder dir;
+  for (const Files& f : small_bags(dir))
+    if (f.name < "g.mcap") {
+      EXPECT_EQ(read_all(dir.write(f.name, with_small_chunk(f))), 100) << f.name;
+    }
+}
+
 TEST(BagDamage, OfADatabaseThatIsCutTheBeginningIsRead) {
   Folder dir;
   const std::string bytes = small_bags(dir).back().bytes;
