@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core_stack/mapping/obstacles/thinned_out.h"
 #include "sdk/map_merge/map_overlay.h"
 
 namespace karst::map_merge {
 namespace {
 
+using core::PlaceDescriptor;
+using core::PlaceFrame;
 using core::PointTree;
 using core::Pose;
 using core::Quat;
+using core::thinned_out;
 using core::Vec3;
 using core::Vec3f;
 

@@ -1,6 +1,7 @@
 // Candidate poses of one map in another, without prior knowledge except, perhaps, gravity: similar places.
 #pragma once
-#include "sdk/map_merge/place_descriptor.h"
+#include "core_stack/loops/place_descriptor.h"
+#include "sdk/map_merge/map_piece.h"
 
 namespace karst::map_merge {
 

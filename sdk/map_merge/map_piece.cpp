@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "core_stack/mapping/obstacles/plane_normal.h"
-#include "core_stack/mapping/occupancy/packed_cell.h"
+#include "core_stack/mapping/obstacles/thinned_out.h"
 
 namespace karst::map_merge {
 namespace {
@@ -43,32 +43,6 @@ void complete(MapPiece& piece) {
 
 }  // namespace
 
-std::vector<Vec3f> thinned_out(const std::vector<Vec3f>& points, double cell_m) {
-  struct Entry {
-    core::PackedCell cell;
-    std::uint32_t index;
-  };
-  std::vector<Entry> entries;
-  entries.reserve(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d k = (points[i].cast<double>() / cell_m).array().floor();
-    if (!points[i].allFinite() || k.cwiseAbs().maxCoeff() >= core::kPackedLimit) continue;
-    entries.push_back(
-        {core::pack({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())}), i});
-  }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.cell != b.cell ? a.cell < b.cell : a.index < b.index;
-  });
-  std::vector<Vec3f> thin;
-  for (std::size_t begin = 0, end = 0; begin < entries.size(); begin = end) {
-    Vec3 sum = Vec3::Zero();
-    for (; end < entries.size() && entries[end].cell == entries[begin].cell; ++end)
-      sum += points[entries[end].index].cast<double>();
-    thin.push_back((sum / static_cast<double>(end - begin)).cast<float>());
-  }
-  return thin;
-}
-
 MapPiece piece_of(std::shared_ptr<const VoxelMap> map) {
   MapPiece piece;
   piece.resolution_m = map->resolution_m();
@@ -83,7 +57,7 @@ MapPiece piece_of(std::shared_ptr<const VoxelMap> map) {
 MapPiece piece_of(const std::vector<Vec3f>& cloud, double resolution_m) {
   MapPiece piece;
   piece.resolution_m = resolution_m;
-  piece.surface = thinned_out(cloud, resolution_m);
+  piece.surface = core::thinned_out(cloud, resolution_m);
   complete(piece);
   return piece;
 }

@@ -26,7 +26,4 @@ MapPiece piece_of(std::shared_ptr<const core::VoxelMap> map);
 /// Throws std::invalid_argument if none is left.
 MapPiece piece_of(const std::vector<core::Vec3f>& cloud, double resolution_m);
 
-/// One point, the mean, for each cell that contains points; in the order of the cells.
-std::vector<core::Vec3f> thinned_out(const std::vector<core::Vec3f>& points, double cell_m);
-
 }  // namespace karst::map_merge

@@ -9,6 +9,7 @@
 #include "core_stack/mission/recording/recorder.h"
 #include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/replay/imu_prediction.h"
+#include "sdk/replay/loop_files.h"
 
 namespace karst::replay {
 namespace {
@@ -40,6 +41,14 @@ std::vector<core::Ray> rays_of(const core::Sweep& sweep, const core::StateHistor
   return rays;
 }
 
+/// What is kept of a scan: where it was placed.
+struct PlacedScan {
+  TimeNs stamp = 0;
+  Pose T_world_body;
+  bool valid = false;
+  std::string problem;
+};
+
 /// The run directory of a replay: like a flight's, without the files that only a flight has.
 class ReplayFiles {
  public:
@@ -49,8 +58,8 @@ class ReplayFiles {
     if (!trajectory_) throw core::InputError((run_dir / "trajectory.tum").string(), "", "cannot be written");
   }
 
-  void scan(const core::LoamPose& pose, const std::vector<core::CellChange>& changes,
-            const core::VoxelMap& map, const Vec3& velocity_mps) {
+  void scan(const PlacedScan& pose, const std::vector<core::CellChange>& changes, const core::VoxelMap& map,
+            const Vec3& velocity_mps) {
     const Vec3& p = pose.T_world_body.position;
     const core::Quat& q = pose.T_world_body.orientation;
     std::array<char, 256> line;
@@ -95,6 +104,136 @@ class ReplayFiles {
   bool lost_ = false;
 };
 
+/// A map of placed scans, and the files that tell of them.
+class Mapping {
+ public:
+  Mapping(const ReplayOptions& options, const std::filesystem::path& run_dir, TimeNs origin,
+          std::optional<std::size_t> scans)
+      : map_(options.map), range_m_(options.mapping_range_m), files_(run_dir, origin) {
+    files_.begin(scans);
+  }
+
+  /// The returns of the sweep, in the world, are in `rays()` until the next call; none if it was not placed.
+  void add(const core::Sweep& sweep, const PlacedScan& placed) {
+    Vec3 velocity_mps = Vec3::Zero();
+    if (!track_.states().empty() && sweep.stamp > track_.states().back().stamp)
+      velocity_mps = (placed.T_world_body.position - track_.states().back().position) /
+                     core::seconds(sweep.stamp - track_.states().back().stamp);
+    std::vector<core::CellChange> changes;
+    rays_.clear();
+    if (placed.valid) {
+      track_.push({sweep.stamp, placed.T_world_body.position, velocity_mps, placed.T_world_body.orientation,
+                   Vec3::Zero()});
+      rays_ = rays_of(sweep, track_, range_m_);
+      changes = map_.insert(rays_);
+    }
+    files_.scan(placed, changes, map_, velocity_mps);
+    last_ = placed.stamp;
+  }
+  void end(core::MissionOutcome outcome, const std::string& reason) {
+    files_.end(last_, outcome, reason, map_);
+  }
+  void end_at(TimeNs stamp) { last_ = stamp; }
+  const core::VoxelMap& map() const { return map_; }
+  const std::vector<core::Ray>& rays() const { return rays_; }
+
+ private:
+  core::VoxelMap map_;
+  double range_m_;
+  ReplayFiles files_;
+  core::StateHistory track_;
+  std::vector<core::Ray> rays_;
+  TimeNs last_ = 0;
+};
+
+/// How a replay ended.
+struct Ending {
+  core::MissionOutcome outcome = core::MissionOutcome::replayed;
+  std::string reason = "the recording ended";
+};
+
+/// Collects what the loops need of each scan, and measures how long each search takes.
+class LoopSearch {
+ public:
+  LoopSearch(const ReplayOptions& options, bool gravity_known)
+      : loops_(options.loop_closing, gravity_known, static_cast<int>(options.loam.threads)) {}
+
+  void add(const core::LoamPose& pose, const std::vector<core::Ray>& rays) {
+    if (!pose.valid) return;
+    points_.clear();
+    for (const core::Ray& r : rays)
+      if (r.hit) points_.push_back(r.end);
+    core::SubmapBuilder::Seen seen{pose.stamp, pose.T_world_body, pose.free_directions == 0, 0, &points_};
+    const double gap_s = last_ ? core::seconds(pose.stamp - *last_) : 0;
+    if (pose.anew)
+      seen.further_uncertainty_m = kAnew_m + kSpeed_mps * gap_s;
+    else if (gap_s > kGap_s)
+      seen.further_uncertainty_m = kGapDrift_mps * gap_s;
+    last_ = pose.stamp;
+    timed([&] { loops_.add(seen); });
+  }
+  void finish() {
+    timed([&] { loops_.finish(); });
+  }
+  const core::LoopClosing& loops() const { return loops_; }
+  const std::vector<double>& found_ms() const { return found_ms_; }  // of each closure
+  double all_s() const { return all_s_; }
+
+ private:
+  static constexpr double kAnew_m = 10, kSpeed_mps = 2, kGap_s = 1, kGapDrift_mps = 0.05;
+
+  template <class Work>
+  void timed(const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    all_s_ += took_s;
+    found_ms_.resize(loops_.closures().size(), 1e3 * took_s);
+  }
+
+  core::LoopClosing loops_;
+  std::vector<core::Vec3f> points_;
+  std::optional<TimeNs> last_;
+  std::vector<double> found_ms_;
+  double all_s_ = 0;
+};
+
+/// Maps the scans again, at corrected poses, into a folder whose files then replace those of the run directory.
+/// False if stopped: then nothing has changed.
+bool map_again(SensorStream& sensors, const ReplayOptions& options, const std::filesystem::path& run_dir,
+               const std::vector<PlacedScan>& placed, const core::TrackCorrection& corrected,
+               const Ending& ending, const ReplayProgress& progress) {
+  namespace fs = std::filesystem;
+  const TimeNs origin = sensors.begin();
+  const fs::path part = run_dir / "corrected.part";
+  fs::remove_all(part);
+  {
+    Mapping mapping(options, part, origin, sensors.scans());
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      ReadNotes notes;
+      std::optional<core::Sweep> sweep = sensors.next_sweep(notes);
+      if (!sweep || sweep->stamp - origin != placed[i].stamp)
+        throw core::InputError(run_dir.string(), "", "the recording changed while it was replayed");
+      sweep->stamp -= origin;
+      PlacedScan p = placed[i];
+      p.T_world_body = corrected(p.stamp, p.T_world_body);
+      mapping.add(*sweep, p);
+      core::LoamPose shown;
+      shown.stamp = p.stamp, shown.T_world_body = p.T_world_body, shown.valid = p.valid;
+      if (!progress(i + 1, shown, mapping.map())) {
+        fs::remove_all(part);
+        return false;
+      }
+    }
+    mapping.end(ending.outcome, ending.reason);
+  }
+  fs::rename(run_dir / "trajectory.tum", run_dir / "trajectory_odometry.tum");
+  for (const auto& file : fs::directory_iterator(part))
+    fs::rename(file.path(), run_dir / file.path().filename());
+  fs::remove(part);
+  return true;
+}
+
 }  // namespace
 
 void describe(core::OptionTable& t, ReplayOptions& o) {
@@ -105,33 +244,38 @@ void describe(core::OptionTable& t, ReplayOptions& o) {
   t.add("replay.level", o.level,
         "take the attitude at the start from the IMU's first moment, in which the sensor stood still");
   t.add("replay.still", o.still_s, "s", 0.01, 60, "length of this moment");
+  t.add("replay.loops", o.loops, "recognize places seen before, and correct trajectory and map by them");
+  t.section("loops", o.loop_closing);
 }
 
 ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& options,
-                               const std::filesystem::path& run_dir, const ReplayProgress& progress) {
+                               const std::filesystem::path& run_dir, const ReplayProgress& progress,
+                               const ReopenSensors& reopen) {
   using Clock = std::chrono::steady_clock;
   const TimeNs origin = sensors.begin();
   std::optional<ImuPrediction> imu;
   if (sensors.has_imu()) imu.emplace(sensors, options.estimator, origin, options.level, options.still_s);
   core::Loam loam(options.loam, imu ? imu->T_world_start() : Pose{});
-  core::VoxelMap map(options.map);
-  ReplayFiles files(run_dir, origin);
-  files.begin(sensors.scans());
+  Mapping mapping(options, run_dir, origin, sensors.scans());
+  std::optional<LoopSearch> search;
+  if (options.loops && reopen) search.emplace(options, imu.has_value());
 
   ReplaySummary summary;
-  core::StateHistory track;
+  std::vector<PlacedScan> placed;
   const core::StateHistory nothing;
   Pose last;
-  TimeNs last_stamp = 0;
-  bool go_on = true;
-  while (go_on) {
+  Ending ending;
+  std::exception_ptr damage;
+  for (bool go_on = true; go_on;) {
     ReadNotes notes;
     std::optional<core::Sweep> next;
     try {
       next = sensors.next_sweep(notes);
     } catch (const core::InputError& e) {
-      files.end(notes.stamp - origin, core::MissionOutcome::aborted, e.what(), map);
-      throw;
+      mapping.end_at(notes.stamp - origin);
+      ending = {core::MissionOutcome::aborted, e.what()};
+      damage = std::current_exception();
+      break;
     }
     if (!next) break;
     core::Sweep& sweep = *next;
@@ -143,15 +287,13 @@ ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& optio
     const double took_s = std::chrono::duration<double>(Clock::now() - begin).count();
     if (imu) imu->correct(pose);
 
-    Vec3 velocity_mps = Vec3::Zero();
-    if (!track.states().empty() && sweep.stamp > track.states().back().stamp)
-      velocity_mps = (pose.T_world_body.position - track.states().back().position) /
-                     core::seconds(sweep.stamp - track.states().back().stamp);
-    std::vector<core::CellChange> changes;
+    const PlacedScan scan{pose.stamp, pose.T_world_body, pose.valid, pose.problem};
+    mapping.add(sweep, scan);
+    if (search) {
+      search->add(pose, mapping.rays());
+      placed.push_back(scan);
+    }
     if (pose.valid) {
-      track.push({sweep.stamp, pose.T_world_body.position, velocity_mps, pose.T_world_body.orientation,
-                  Vec3::Zero()});
-      changes = map.insert(rays_of(sweep, track, options.mapping_range_m));
       if (summary.scans > summary.lost) summary.path_m += (pose.T_world_body.position - last.position).norm();
       last = pose.T_world_body;
     } else {
@@ -165,13 +307,33 @@ ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& optio
     summary.without_times = summary.without_times || notes.without_times;
     summary.localization_s += took_s;
     summary.slowest_s = std::max(summary.slowest_s, took_s);
-    files.scan(pose, changes, map, velocity_mps);
-    last_stamp = sweep.stamp;
-    go_on = progress(summary.scans, pose, map);
+    go_on = progress(summary.scans, pose, mapping.map());
+    if (!go_on) ending = {core::MissionOutcome::aborted, "stopped by the operator"};
   }
-  files.end(last_stamp, go_on ? core::MissionOutcome::replayed : core::MissionOutcome::aborted,
-            go_on ? "the recording ended" : "stopped by the operator", map);
+  mapping.end(ending.outcome, ending.reason);
   summary.imu_samples = imu ? imu->samples() : 0;
+  if (search) {
+    search->finish();
+    const core::LoopClosing& loops = search->loops();
+    write_loops(run_dir / "loops.csv", loops, search->found_ms(), origin);
+    summary.loops = {loops.closed(), loops.closures().size() - loops.closed(), loops.submaps().size(),
+                     loops.bytes(), loops.path_m(), search->all_s(), 0};
+    if (loops.closed() > 0) {
+      const core::TrackCorrection corrected = loops.correction();
+      for (const PlacedScan& p : placed)
+        summary.loops.largest_correction_m =
+            std::max(summary.loops.largest_correction_m,
+                     (corrected(p.stamp, p.T_world_body).position - p.T_world_body.position).norm());
+      const std::unique_ptr<SensorStream> again = reopen();
+      const bool stopped = ending.outcome == core::MissionOutcome::aborted && !damage;
+      summary.loops.mapped_again = map_again(
+          *again, options, run_dir, placed, corrected, ending,
+          [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
+            return progress(scan, pose, map) || stopped;  // stopped once: what was placed is still mapped
+          });
+    }
+  }
+  if (damage) std::rethrow_exception(damage);
   return summary;
 }
 

@@ -106,6 +106,12 @@ void print_summary(const replay::ReplaySummary& s, const nlohmann::json& metrics
   if (s.scans > 0)
     print_out("  localization     %.1f ms a scan, %.1f ms at most\n",
               1e3 * s.localization_s / static_cast<double>(s.scans), 1e3 * s.slowest_s);
+  if (const replay::LoopSummary& l = s.loops; l.closed > 0)
+    print_out("  loops            %zu closures; positions corrected by up to %.2f m%s\n", l.closed,
+              l.largest_correction_m, l.mapped_again ? "" : " (stopped: not applied)");
+  if (s.loops.submaps > 0 && s.loops.path_m > 0)
+    print_out("  search for loops %.1f s; %zu submaps, %.1f MB a km\n", s.loops.search_s, s.loops.submaps,
+              1e-3 * static_cast<double>(s.loops.bytes) / s.loops.path_m);
   if (s.without_times)
     print_out(
         "note: the points have no times, so motion during a scan was not compensated; see time.direction and "
@@ -163,7 +169,8 @@ int replay_scans(const ReplayArguments& args) {
         [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
           line.show(scan, pose, map);
           return !interrupted;
-        });
+        },
+        [&] { return std::move(replay::open_source(args.scans, args.info).sensors); });
   } catch (const core::InputError& e) {
     damage = e.what();
   }

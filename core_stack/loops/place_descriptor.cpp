@@ -1,14 +1,10 @@
-#include "sdk/map_merge/place_descriptor.h"
+#include "core_stack/loops/place_descriptor.h"
 
 #include <algorithm>
 #include <complex>
 
-namespace karst::map_merge {
+namespace karst::core {
 namespace {
-
-using core::PointTree;
-using core::Quat;
-using core::Vec3;
 
 constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr float kFull = 3;  // points that fill a cell: further ones add no information
@@ -62,7 +58,7 @@ PlaceDescriptor::Turn PlaceDescriptor::turn_of(const PlaceDescriptor& other) con
   // The vertex of the parabola through the best shift and its neighbours.
   const double bend = at(best - 1) - 2 * at(best) + at(best + 1);
   const double off = bend < 0 ? 0.5 * (at(best - 1) - at(best + 1)) / bend : 0;
-  return {core::wrap_angle((best + std::clamp(off, -0.5, 0.5)) * kTwoPi / kSectors), at(best)};
+  return {wrap_angle((best + std::clamp(off, -0.5, 0.5)) * kTwoPi / kSectors), at(best)};
 }
 
-}  // namespace karst::map_merge
+}  // namespace karst::core

@@ -1,4 +1,5 @@
-// Rotation-invariant descriptor of the rock around a place, to find a place of one map in another.
+// Rotation-invariant descriptor of the rock around a place, to find a place of one map in another or again in
+// its own.
 //
 // About an axis through the place, space is divided into rings of width dr, slices of height dz and sectors;
 // each cell holds how full of rock it is. With known gravity the axis is up; without, it is the rock's
@@ -9,13 +10,14 @@
 #pragma once
 #include <array>
 
-#include "sdk/map_merge/map_piece.h"
+#include "core_stack/common/geometry.h"
+#include "core_stack/mapping/obstacles/point_tree.h"
 
-namespace karst::map_merge {
+namespace karst::core {
 
 struct PlaceFrame {
-  core::Vec3 position;
-  core::Quat orientation;  // its z axis is the descriptor's axis
+  Vec3 position;
+  Quat orientation;  // its z axis is the descriptor's axis
 };
 
 class PlaceDescriptor {
@@ -25,7 +27,7 @@ class PlaceDescriptor {
   static constexpr int kInvariants = kRings * kSlices * kHarmonics;
 
   /// Uses those of `points` (evenly thinned) that lie around the frame: dr and dz are both `cell_m`.
-  PlaceDescriptor(const core::PointTree& points, const PlaceFrame& frame, double cell_m);
+  PlaceDescriptor(const PointTree& points, const PlaceFrame& frame, double cell_m);
 
   /// Unit length; invariant to rotations about the axis.
   const Eigen::Matrix<float, kInvariants, 1>& invariants() const { return invariants_; }
@@ -44,4 +46,4 @@ class PlaceDescriptor {
   int count_ = 0;
 };
 
-}  // namespace karst::map_merge
+}  // namespace karst::core
