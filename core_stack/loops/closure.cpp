@@ -1,9 +1,12 @@
 #include "core_stack/loops/closure.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core_stack/common/format_text.h"
+#include "core_stack/common/so3.h"
 
 namespace karst::core {
 namespace {
@@ -13,11 +16,19 @@ constexpr std::size_t kOverlapPoints = 3000;  // looked at in each direction
 // Standard deviations beside those of the fit, whose residuals are not independent.
 constexpr double kPosition_m = 0.03, kRotation_rad = 0.003, kFitFactor = 10;
 
+// The first, rough fit: how far points look for rock, and how often; points are an even sample.
+constexpr std::array<double, 4> kReach_m{2.0, 1.2, 0.7, 0.4};
+constexpr int kRoughSteps = 5;
+constexpr std::size_t kRoughPoints = 800;
+constexpr double kRoughDeviation_m = 0.05;
+// Of all six unknowns (registration.h): a passage holds the turn about its own axis less than the position.
+constexpr double kDegenerate = 0.002;
+
 LocalMapOptions grids(double voxel_m) {
   LocalMapOptions o;
   o.voxel_m = 1.5 * voxel_m;
   o.edge_voxel_m = 3 * voxel_m;
-  o.levels = 3;
+  o.levels = 2;
   return o;
 }
 
@@ -35,6 +46,49 @@ double overlap_of(const std::vector<Vec3f>& points, const Pose& T_to_from, const
   return all == 0 ? 0 : static_cast<double>(near) / static_cast<double>(all);
 }
 
+/// Iterative closest point, point to plane, of points to the nearest rock: rough, but it finds its way from
+/// farther than the matches of means in equal voxels, which follow.
+Pose roughly_fitted(const SubmapRock& older, const std::vector<Vec3f>& from, Pose T, int threads) {
+  const VoxelGrid& grid = older.map().surfaces().front();
+  const std::size_t stride = from.size() / kRoughPoints + 1;
+  std::vector<Match> matches;
+  for (const double reach_m : kReach_m)
+    for (int step = 0; step < kRoughSteps; ++step) {
+      matches.clear();
+      for (std::size_t i = 0; i < from.size(); i += stride) {
+        Match m;
+        m.p = from[i].cast<double>();
+        const auto nearest = older.tree().nearest(T * m.p);
+        if (nearest->distance_m > reach_m) continue;
+        const Vec3f& rock = older.tree().points()[nearest->index];
+        const VoxelGrid::Key key = grid.key_of(rock);
+        const Surface surface = surface_of(grid, key, grid.window_around(key), 6);
+        if (surface.points < 6) continue;
+        m.q = rock.cast<double>();
+        m.n1 = surface.axes.col(0);
+        m.normals = 1;
+        m.variance_m2 = kRoughDeviation_m * kRoughDeviation_m;
+        matches.push_back(m);
+      }
+      if (matches.size() < 60) return T;
+      const Vector6 change = solve(linearize(matches, T, reach_m, threads), kDegenerate).change;
+      T.position += change.head<3>();
+      T.orientation = (T.orientation * exp_so3(change.tail<3>())).normalized();
+      if (change.norm() < 1e-3) break;
+    }
+  return T;
+}
+
+/// Least mean squared cosine between a direction and the normals of the rock that coincides.
+double hold_of(const Cloud& cloud, const LocalMap& map, const Pose& T, Workspace& workspace) {
+  const Matches matches = find_matches(cloud, map, T, 0, workspace);
+  if (matches.all.empty()) return 0;
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Match& m : matches.all) squares += m.n1 * m.n1.transpose();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(squares).eigenvalues()[0] /
+         static_cast<double>(matches.all.size());
+}
+
 double clearance_of(const std::vector<Vec3f>& flown, const Pose& T_to_from, const PointTree& rock) {
   double least = 1e9;
   for (const Vec3f& p : flown) least = std::min(least, rock.nearest(T_to_from * p.cast<double>())->distance_m);
@@ -46,7 +100,8 @@ Vec3 middle_of(const std::vector<Vec3f>& flown) { return flown[flown.size() / 2]
 std::string objection(const Closure& c, const Fit& fit, double clearance_m, const ClosureLimits& limits) {
   const double tilt = std::acos(std::clamp((c.T_older_newer.orientation * Vec3::UnitZ()).z(), -1.0, 1.0));
   if (!fit.good) return "the rock does not match";
-  if (fit.free_directions > 0) return "the rock leaves a direction free, as a smooth tube does";
+  if (fit.free_directions > 0 || c.hold < limits.min_hold)
+    return "the rock leaves a direction free, as a smooth tube does";
   if (c.overlap < limits.min_overlap)
     return format_text("only %.0f %% of the rock coincides", 100 * c.overlap);
   if (c.residual_m > limits.max_residual_m) return format_text("the residual is %.2f m", c.residual_m);
@@ -86,13 +141,14 @@ Closure registered(const SubmapRock& older, const SubmapRock& newer, const Pose&
     return c;
   }
   RegistrationOptions registration;
-  registration.max_passes = 7;
-  registration.degenerate_fraction = limits.min_hold;
+  registration.max_passes = 5;
+  registration.degenerate_fraction = kDegenerate;
   const Cloud cloud{{}, from, from};
-  const Fit fit = fit_to_map(cloud, older.map(), T_older_newer, older.map().surfaces().size() - 1,
-                             registration, workspace);
+  const Pose rough = roughly_fitted(older, from, T_older_newer, workspace.threads);
+  const Fit fit = fit_to_map(cloud, older.map(), rough, 1, registration, workspace);
   c.T_older_newer = fit.T_world_body;
   c.residual_m = fit.rms_residual_m;
+  c.hold = hold_of(cloud, older.map(), c.T_older_newer, workspace);
   c.covariance = kFitFactor * fit.covariance;
   c.covariance.diagonal().head<3>().array() += kPosition_m * kPosition_m;
   c.covariance.diagonal().tail<3>().array() += kRotation_rad * kRotation_rad;

@@ -12,7 +12,7 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Sparse = Eigen::SparseMatrix<double>;
 
-constexpr double kSmallGain = 1e-8;  // relative: below it a step has converged
+constexpr double kSmallGain = 1e-11;  // relative: below it a step has converged
 constexpr double kShrink = 0.25;     // of the squared kernel width, from one stage to the next
 
 /// Inverse of the right Jacobian of SO(3): log(exp(v) exp(d)) = v + J d for small d.

@@ -55,7 +55,7 @@ std::vector<std::array<std::int16_t, 3>> packed(const std::vector<Vec3f>& points
   out.reserve(points.size());
   for (const Vec3f& p : points) {
     const Vec3f scaled = kPerMetre * p;
-    if (!(scaled.cwiseAbs().maxCoeff() < 32767)) continue;
+    if (!scaled.allFinite() || scaled.cwiseAbs().maxCoeff() >= 32767) continue;
     out.push_back({static_cast<std::int16_t>(std::lround(scaled.x())),
                    static_cast<std::int16_t>(std::lround(scaled.y())),
                    static_cast<std::int16_t>(std::lround(scaled.z()))});
