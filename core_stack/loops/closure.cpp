@@ -11,7 +11,7 @@
 namespace karst::core {
 namespace {
 
-constexpr double kNearVoxels = 1.5;         // rock nearer than this is the same
+constexpr double kNearVoxels = 1.5;           // rock nearer than this is the same
 constexpr std::size_t kOverlapPoints = 3000;  // looked at in each direction
 // Standard deviations beside those of the fit, whose residuals are not independent.
 constexpr double kPosition_m = 0.03, kRotation_rad = 0.003, kFitFactor = 10;
@@ -91,7 +91,8 @@ double hold_of(const Cloud& cloud, const LocalMap& map, const Pose& T, Workspace
 
 double clearance_of(const std::vector<Vec3f>& flown, const Pose& T_to_from, const PointTree& rock) {
   double least = 1e9;
-  for (const Vec3f& p : flown) least = std::min(least, rock.nearest(T_to_from * p.cast<double>())->distance_m);
+  for (const Vec3f& p : flown)
+    least = std::min(least, rock.nearest(T_to_from * p.cast<double>())->distance_m);
   return least;
 }
 
@@ -105,8 +106,7 @@ std::string objection(const Closure& c, const Fit& fit, double clearance_m, cons
   if (c.overlap < limits.min_overlap)
     return format_text("only %.0f %% of the rock coincides", 100 * c.overlap);
   if (c.residual_m > limits.max_residual_m) return format_text("the residual is %.2f m", c.residual_m);
-  if (tilt > limits.max_tilt_rad)
-    return format_text("tilted by %.1f deg", tilt * 180 / std::numbers::pi);
+  if (tilt > limits.max_tilt_rad) return format_text("tilted by %.1f deg", tilt * 180 / std::numbers::pi);
   if (clearance_m < limits.min_clearance_m) return "one was flown through the other's rock";
   return "";
 }
@@ -114,7 +114,8 @@ std::string objection(const Closure& c, const Fit& fit, double clearance_m, cons
 }  // namespace
 
 void describe(OptionTable& t, ClosureLimits& o) {
-  t.add("overlap_radius", o.overlap_radius_m, "m", 2, 100, "rock nearer than this to the place must coincide");
+  t.add("overlap_radius", o.overlap_radius_m, "m", 2, 100,
+        "rock nearer than this to the place must coincide");
   t.add("min_overlap", o.min_overlap, "", 0, 1, "share of this rock, in both directions");
   t.add("max_residual", o.max_residual_m, "m", 0.01, 2, "root mean square distance of coinciding rock");
   t.add("min_hold", o.min_hold, "", 0, 0.3,
@@ -156,9 +157,9 @@ Closure registered(const SubmapRock& older, const SubmapRock& newer, const Pose&
   const double near_m = kNearVoxels * older.map().surfaces().front().voxel_m() / 1.5;
   const Pose T_newer_older = c.T_older_newer.inverse();
   const Vec3 about_newer = middle_of(newer.submap().flown), about_older = c.T_older_newer * about_newer;
-  c.overlap = std::min(
-      overlap_of(from, c.T_older_newer, older.tree(), about_older, limits.overlap_radius_m, near_m),
-      overlap_of(to, T_newer_older, newer.tree(), about_newer, limits.overlap_radius_m, near_m));
+  c.overlap =
+      std::min(overlap_of(from, c.T_older_newer, older.tree(), about_older, limits.overlap_radius_m, near_m),
+               overlap_of(to, T_newer_older, newer.tree(), about_newer, limits.overlap_radius_m, near_m));
   const double clearance_m = std::min(clearance_of(newer.submap().flown, c.T_older_newer, older.tree()),
                                       clearance_of(older.submap().flown, T_newer_older, newer.tree()));
   c.problem = objection(c, fit, clearance_m, limits);

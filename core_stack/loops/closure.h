@@ -9,13 +9,13 @@
 namespace karst::core {
 
 struct ClosureLimits {
-  double overlap_radius_m = 10;   // rock nearer than this to the place must coincide
-  double min_overlap = 0.7;       // of the rock there, in both directions
-  double max_residual_m = 0.15;   // root mean square, with robust weights
-  double min_hold = 0.015;        // mean squared cosine of the least constrained direction to the rock's normals
-  double max_tilt_rad = 0.05;     // between the vertical axes
-  double min_clearance_m = 0.3;   // of one's flown path from the other's rock
-  double max_rival = 0.85;        // overlap of another pose that also fits, divided by the best one's
+  double overlap_radius_m = 10;  // rock nearer than this to the place must coincide
+  double min_overlap = 0.7;      // of the rock there, in both directions
+  double max_residual_m = 0.15;  // root mean square, with robust weights
+  double min_hold = 0.015;     // mean squared cosine of the least constrained direction to the rock's normals
+  double max_tilt_rad = 0.05;  // between the vertical axes
+  double min_clearance_m = 0.3;  // of one's flown path from the other's rock
+  double max_rival = 0.85;       // overlap of another pose that also fits, divided by the best one's
 };
 void describe(OptionTable& t, ClosureLimits& o);
 
@@ -25,7 +25,7 @@ struct Closure {
   Matrix6 covariance = Matrix6::Identity();  // translation (older frame, m), rotation (newer frame, rad)
   double overlap = 0;                        // the smaller one of both directions
   double residual_m = 0;
-  double hold = 0;  // see ClosureLimits
+  double hold = 0;      // see ClosureLimits
   std::string problem;  // why it is not credible; empty if it is
 };
 

@@ -9,10 +9,10 @@
 namespace karst::core {
 namespace {
 
-constexpr double kNear_m = 6;         // a submap nearer than this by the graph is tried whatever it looks like
-constexpr double kClosure_m = 0.1;    // uncertainty across a closure
-constexpr double kTied_m = 0.2;       // a submap less uncertain than this against an old one is not tried
-constexpr double kSamePose_m = 1, kSamePose_rad = 0.1;  // fits nearer than this to each other are one
+constexpr double kNear_m = 6;       // a submap nearer than this by the graph is tried whatever it looks like
+constexpr double kClosure_m = 0.1;  // uncertainty across a closure
+constexpr double kTied_m = 0.2;     // a submap less uncertain than this against an old one is not tried
+constexpr double kSamePose_m = 1, kSamePose_rad = 0.1;    // fits nearer than this to each other are one
 constexpr double kTurn_rad = 0.15, kTurnPerMetre = 0.02;  // greatest correction of the rotation
 // Closures agree if they are near each other along both paths and imply the same pose.
 constexpr double kAgreePath_m = 25, kAgree_m = 0.3, kAgreePerMetre = 0.01, kAgree_rad = 0.035;
@@ -81,8 +81,8 @@ void LoopClosing::take(Submap submap) {
   look_for_closures(n);
 }
 
-/// How far each submap may be from where the graph says, seen from `submap`: the least uncertain way along the
-/// path and across closures (Dijkstra).
+/// How far each submap may be from where the graph says, seen from `submap`: the least uncertain way along
+/// the path and across closures (Dijkstra).
 std::vector<double> LoopClosing::uncertainty_from(std::size_t submap) const {
   std::vector<std::vector<std::size_t>> across(submaps_.size());
   for (const FoundClosure& f : closures_) {
@@ -243,9 +243,8 @@ void LoopClosing::solve() {
 }
 
 std::size_t LoopClosing::closed() const {
-  return static_cast<std::size_t>(std::count_if(closures_.begin(), closures_.end(), [](const auto& f) {
-    return f.state == ClosureState::closed;
-  }));
+  return static_cast<std::size_t>(std::count_if(
+      closures_.begin(), closures_.end(), [](const auto& f) { return f.state == ClosureState::closed; }));
 }
 
 std::size_t LoopClosing::bytes() const {

@@ -13,14 +13,14 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double kSmallGain = 1e-11;  // relative: below it a step has converged
-constexpr double kShrink = 0.25;     // of the squared kernel width, from one stage to the next
+constexpr double kShrink = 0.25;      // of the squared kernel width, from one stage to the next
 
 /// Inverse of the right Jacobian of SO(3): log(exp(v) exp(d)) = v + J d for small d.
 Eigen::Matrix3d right_jacobian_inverse(const Vec3& v) {
   const double angle = v.norm();
   const Eigen::Matrix3d V = skew(v);
-  const double c = angle < 1e-4 ? 1.0 / 12
-                                : 1 / (angle * angle) - (1 + std::cos(angle)) / (2 * angle * std::sin(angle));
+  const double c =
+      angle < 1e-4 ? 1.0 / 12 : 1 / (angle * angle) - (1 + std::cos(angle)) / (2 * angle * std::sin(angle));
   return Eigen::Matrix3d::Identity() + 0.5 * V + c * V * V;
 }
 
@@ -46,8 +46,8 @@ struct Problem {
     }
     if (up_sigma_rad)
       for (std::size_t i = 1; i < poses.size(); ++i)
-        sum += (poses[i].orientation * Vec3::UnitZ()).head<2>().squaredNorm() /
-               (*up_sigma_rad * *up_sigma_rad);
+        sum +=
+            (poses[i].orientation * Vec3::UnitZ()).head<2>().squaredNorm() / (*up_sigma_rad * *up_sigma_rad);
     return sum;
   }
 };
@@ -155,7 +155,8 @@ double largest_robust_error(const std::vector<Pose>& poses, const std::vector<Gr
 }  // namespace
 
 EdgeError error_of(const GraphEdge& edge, const Pose& from, const Pose& to) {
-  const Eigen::Matrix3d R_from = from.orientation.toRotationMatrix(), R_to = to.orientation.toRotationMatrix(),
+  const Eigen::Matrix3d R_from = from.orientation.toRotationMatrix(),
+                        R_to = to.orientation.toRotationMatrix(),
                         R_Z = edge.T_from_to.orientation.toRotationMatrix();
   const Vec3 between = R_from.transpose() * (to.position - from.position);
   const Vec3 turned = log_so3(

@@ -5,10 +5,10 @@
 //   e = ( R_Z' (R_i' (t_j - t_i) - t_Z),  log(R_Z' R_i' R_j) )
 //
 // and its cost e' W e, W the inverse of the measurement's covariance. Levenberg and Marquardt's method
-// minimizes the sum; a sparse Cholesky factorization solves each step. Edges that may be wrong (loop closures)
-// get the weight (c^2 / (c^2 + e' W e))^2 of Geman and McClure, whose width c begins so wide that all edges
-// count, and shrinks to its end value in steps (graduated non-convexity: Yang et al., RA-L 2020). The drift
-// before a closure does not make it an outlier then.
+// minimizes the sum; a sparse Cholesky factorization solves each step. Edges that may be wrong (loop
+// closures) get the weight (c^2 / (c^2 + e' W e))^2 of Geman and McClure, whose width c begins so wide that
+// all edges count, and shrinks to its end value in steps (graduated non-convexity: Yang et al., RA-L 2020).
+// The drift before a closure does not make it an outlier then.
 //
 // The first pose is held. Where gravity is known, a pose's z axis is measured as up.
 #pragma once
@@ -29,8 +29,8 @@ struct GraphEdge {
 };
 
 struct PoseGraphOptions {
-  std::int64_t max_steps = 30;  // of Levenberg and Marquardt, for each width of the kernel
-  double kernel_width = 6;      // c, in standard deviations of the whole error
+  std::int64_t max_steps = 30;              // of Levenberg and Marquardt, for each width of the kernel
+  double kernel_width = 6;                  // c, in standard deviations of the whole error
   std::optional<double> up_sigma_rad = {};  // of each pose's z axis against the world's; none: not known
 };
 

@@ -8,8 +8,8 @@
 namespace karst::core {
 namespace {
 
-constexpr double kThin_m = 0.5;   // spacing of the points for descriptors
-constexpr int kMinPoints = 60;    // around a place: with less rock it is not distinctive
+constexpr double kThin_m = 0.5;  // spacing of the points for descriptors
+constexpr int kMinPoints = 60;   // around a place: with less rock it is not distinctive
 constexpr int kMeanShifts = 4;
 constexpr double kMiddle_m = 6;   // radius of the rock whose middle a place is
 constexpr float kPerMetre = 100;  // packed coordinates

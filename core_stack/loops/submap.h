@@ -15,12 +15,12 @@
 namespace karst::core {
 
 struct SubmapOptions {
-  double length_m = 4;           // of the path in one submap
-  double keyframe_m = 0.4;       // between sweeps that are added
-  double range_m = 20;           // of the points, from the sensor
-  double voxel_m = 0.2;          // one point is kept in each
-  double place_distance_m = 1;   // along the path, between described places
-  double place_cell_m = 1.5;     // of the descriptors
+  double length_m = 4;          // of the path in one submap
+  double keyframe_m = 0.4;      // between sweeps that are added
+  double range_m = 20;          // of the points, from the sensor
+  double voxel_m = 0.2;         // one point is kept in each
+  double place_distance_m = 1;  // along the path, between described places
+  double place_cell_m = 1.5;    // of the descriptors
 };
 void describe(OptionTable& t, SubmapOptions& o);
 
@@ -62,8 +62,8 @@ class SubmapBuilder {
   struct Seen {
     TimeNs stamp = 0;
     Pose T_world_body;
-    bool observed = true;                // in all directions
-    double further_uncertainty_m = 0;    // since the last one
+    bool observed = true;              // in all directions
+    double further_uncertainty_m = 0;  // since the last one
     const std::vector<Vec3f>* points_world = nullptr;
   };
   /// The submap that is complete with this sweep, if one is.

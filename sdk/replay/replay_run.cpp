@@ -198,8 +198,8 @@ class LoopSearch {
   double all_s_ = 0;
 };
 
-/// Maps the scans again, at corrected poses, into a folder whose files then replace those of the run directory.
-/// False if stopped: then nothing has changed.
+/// Maps the scans again, at corrected poses, into a folder whose files then replace those of the run
+/// directory. False if stopped: then nothing has changed.
 bool map_again(SensorStream& sensors, const ReplayOptions& options, const std::filesystem::path& run_dir,
                const std::vector<PlacedScan>& placed, const core::TrackCorrection& corrected,
                const Ending& ending, const ReplayProgress& progress) {
@@ -316,8 +316,13 @@ ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& optio
     search->finish();
     const core::LoopClosing& loops = search->loops();
     write_loops(run_dir / "loops.csv", loops, search->found_ms(), origin);
-    summary.loops = {loops.closed(), loops.closures().size() - loops.closed(), loops.submaps().size(),
-                     loops.bytes(), loops.path_m(), search->all_s(), 0};
+    summary.loops = {loops.closed(),
+                     loops.closures().size() - loops.closed(),
+                     loops.submaps().size(),
+                     loops.bytes(),
+                     loops.path_m(),
+                     search->all_s(),
+                     0};
     if (loops.closed() > 0) {
       const core::TrackCorrection corrected = loops.correction();
       for (const PlacedScan& p : placed)

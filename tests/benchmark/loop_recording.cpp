@@ -3,8 +3,9 @@
 //
 //   loop_recording CAVE.info PATH.txt OUT [UNIT [COLUMNS [GYROSCOPE_FACTOR [NOISE_M]]]] [KEY=VALUE ...]
 //
-// A LiDAR and an IMU move along PATH.txt (x y z a line, frame of the cave) at 2 m/s, as in localization_bench.
-// The gyroscope's bias, walk and noise are multiplied by the factor; NOISE_M is that of a range.
+// A LiDAR and an IMU move along PATH.txt (x y z a line, frame of the cave) at 2 m/s, as in
+// localization_bench. The gyroscope's bias, walk and noise are multiplied by the factor; NOISE_M is that of a
+// range.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -41,7 +42,8 @@ class SimulatedSensors : public replay::SensorStream {
     notes.stamp = stamp_;
     if (stamp_ > flight_.truth.back().stamp) return std::nullopt;
     return to_sweep(
-        lidar_.sweep(cave_, flight_.truth, stamp_, Random(static_cast<std::uint64_t>(stamp_ / kPeriod))), 0.3);
+        lidar_.sweep(cave_, flight_.truth, stamp_, Random(static_cast<std::uint64_t>(stamp_ / kPeriod))),
+        0.3);
   }
   bool has_imu() const override { return true; }
   std::optional<ImuSample> next_imu() override {
@@ -78,7 +80,8 @@ void print_errors(const char* name, const fs::path& trajectory, const Flight& fl
   const Pose T_cave_replay = frame_of(flight);
   double squares = 0, most = 0, end = 0, turn = 0;
   for (const auto& p : poses) {
-    const Pose truth = sim::pose_at(flight.truth, from_seconds(p.t_s)), found = T_cave_replay * p.T_world_body;
+    const Pose truth = sim::pose_at(flight.truth, from_seconds(p.t_s)),
+               found = T_cave_replay * p.T_world_body;
     end = (found.position - truth.position).norm();
     turn = found.orientation.angularDistance(truth.orientation) * 180 / std::numbers::pi;
     squares += end * end;
@@ -93,16 +96,18 @@ void print_map_error(const char* name, const VoxelMap& map, const cave::Cave& ca
   const Pose T_cave_replay = frame_of(flight);
   std::vector<double> off;
   map.for_each_known([&](const CellKey& k, Cell c, float) {
-    if (c == Cell::occupied) off.push_back(cave.scene.distance_to_rock(T_cave_replay * map.center_of(k), 10.0));
+    if (c == Cell::occupied)
+      off.push_back(cave.scene.distance_to_rock(T_cave_replay * map.center_of(k), 10.0));
   });
   double squares = 0, far = 0;
   for (const double d : off) squares += d * d, far += d > 0.3;
   std::sort(off.begin(), off.end());
   const auto n = static_cast<double>(off.size());
-  std::printf("%-10s map: %zu occupied cells, rms %.3f m from the rock, 95 %% within %.3f m, %.1f %% farther "
-              "than 0.3 m; %.0f m3 free\n",
-              name, off.size(), std::sqrt(squares / n), off[static_cast<std::size_t>(0.95 * n)], 100 * far / n,
-              map.free_volume_m3());
+  std::printf(
+      "%-10s map: %zu occupied cells, rms %.3f m from the rock, 95 %% within %.3f m, %.1f %% farther "
+      "than 0.3 m; %.0f m3 free\n",
+      name, off.size(), std::sqrt(squares / n), off[static_cast<std::size_t>(0.95 * n)], 100 * far / n,
+      map.free_volume_m3());
 }
 
 void write_truth(const fs::path& file, const Flight& flight) {
@@ -143,8 +148,7 @@ int run(const std::vector<std::string>& all) {
   const double factor = number(5, 1);
   imu.gyroscope_bias_radps *= factor, imu.gyroscope_noise_radps *= factor, imu.gyroscope_walk *= factor;
   const Vec3 ahead = path[1] - path[0];
-  const Flight flight =
-      fly_along(path, std::atan2(ahead.y(), ahead.x()), kSpeed_mps, kStill_s, imu, 5);
+  const Flight flight = fly_along(path, std::atan2(ahead.y(), ahead.x()), kSpeed_mps, kStill_s, imu, 5);
   const sim::Lidar lidar(lidar_options);
   double clearance_m = 10;
   for (std::size_t i = 0; i < flight.truth.size(); i += 100)

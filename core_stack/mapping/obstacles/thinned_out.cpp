@@ -16,8 +16,7 @@ std::vector<Vec3f> thinned_out(const std::vector<Vec3f>& points, double cell_m) 
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d k = (points[i].cast<double>() / cell_m).array().floor();
     if (!points[i].allFinite() || k.cwiseAbs().maxCoeff() >= kPackedLimit) continue;
-    entries.push_back(
-        {pack({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())}), i});
+    entries.push_back({pack({static_cast<int>(k.x()), static_cast<int>(k.y()), static_cast<int>(k.z())}), i});
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.cell != b.cell ? a.cell < b.cell : a.index < b.index;

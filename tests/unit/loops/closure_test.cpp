@@ -19,7 +19,8 @@ Submap submap_at(const RoughPassage& passage, double s, double heading, std::uin
   for (double d = 0; d < 3.9; d += 0.5) {
     const std::vector<Vec3f> points = passage.rock(s + d, 12, r, 6000);
     const Pose middle = passage.at(s + d);
-    builder.add({from_seconds(d), {middle.position, middle.orientation * from_heading(heading)}, true, 0, &points});
+    builder.add(
+        {from_seconds(d), {middle.position, middle.orientation * from_heading(heading)}, true, 0, &points});
   }
   return *builder.finish();
 }
@@ -40,7 +41,8 @@ TEST(Closure, FindsThePoseFromAGuessThatIsOffMostOfAMetreAndSixDegrees) {
     const Submap older = submap_at(passage, s, 0, 10), newer = submap_at(passage, s + 2, 3.1, 11);
     const Pose truth = truth_of(older, newer);
     const double side = i % 2 == 0 ? 1 : -1;
-    const Pose guess{truth.position + Vec3(0.6 * side, 0.4, 0.2), truth.orientation * from_heading(0.1 * side)};
+    const Pose guess{truth.position + Vec3(0.6 * side, 0.4, 0.2),
+                     truth.orientation * from_heading(0.1 * side)};
     const Closure c = closure_of(older, newer, guess);
     if (c.problem.find("direction free") != std::string::npos) continue;  // a smooth stretch
     EXPECT_EQ(c.problem, "") << i;

@@ -36,7 +36,8 @@ Walk walk(const RoughPassage& passage, double walk_m, double heading_per_m, doub
   return w;
 }
 
-Walk search(LoopClosing& loops, const RoughPassage& passage, double walk_m, double heading_per_m, double climb) {
+Walk search(LoopClosing& loops, const RoughPassage& passage, double walk_m, double heading_per_m,
+            double climb) {
   Walk w = walk(passage, walk_m, heading_per_m, climb,
                 [&](TimeNs t, const Pose& pose, const std::vector<Vec3f>& points) {
                   loops.add({t, pose, true, 0, &points});
@@ -48,8 +49,7 @@ Walk search(LoopClosing& loops, const RoughPassage& passage, double walk_m, doub
 double largest_error(const Walk& w, const TrackCorrection& correction) {
   double most = 0;
   for (std::size_t i = 0; i < w.truth.size(); ++i)
-    most = std::max(most,
-                    (correction(w.stamps[i], w.odometry[i]).position - w.truth[i].position).norm());
+    most = std::max(most, (correction(w.stamps[i], w.odometry[i]).position - w.truth[i].position).norm());
   return most;
 }
 
@@ -122,8 +122,7 @@ TEST(LoopClosing, MemoryGrowsWithThePathOnly) {
   EXPECT_LT(static_cast<double>(loops.bytes()) / loops.path_m(), 40'000);  // 40 MB a km
   const std::size_t before = loops.bytes();
   const std::vector<Vec3f> points(1000, Vec3f(100, 1, 0));
-  for (int i = 0; i < 1000; ++i)
-    loops.add({from_seconds(200 + i), straight.at(100), true, 0, &points});
+  for (int i = 0; i < 1000; ++i) loops.add({from_seconds(200 + i), straight.at(100), true, 0, &points});
   loops.finish();
   EXPECT_LT(loops.bytes() - before, 20'000u);
 }

@@ -1,8 +1,8 @@
 #include "core_stack/loops/pose_graph.h"
 
-#include <Eigen/Dense>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <Eigen/Dense>
 
 #include "core_stack/common/random.h"
 #include "core_stack/common/so3.h"
@@ -87,8 +87,8 @@ TEST(PoseGraph, OfMeasurementsWithoutErrorsIsTheTruth) {
   }
 }
 
-// Along a line, an end that is measured d off moves by d n s^2 / (n s^2 + c^2): n edges of variance s^2 against
-// a closure of variance c^2; poses between move in proportion.
+// Along a line, an end that is measured d off moves by d n s^2 / (n s^2 + c^2): n edges of variance s^2
+// against a closure of variance c^2; poses between move in proportion.
 TEST(PoseGraph, SharesTheErrorOfALineInClosedForm) {
   constexpr std::size_t n = 20;
   constexpr double s2 = 0.01, c2 = 0.04, d = 0.7;
@@ -111,7 +111,8 @@ TEST(PoseGraph, SharesTheErrorOfALineInClosedForm) {
 }
 
 /// Gauss and Newton's method with numerical derivatives and a dense solver.
-std::vector<Pose> solved_densely(std::vector<Pose> poses, const std::vector<GraphEdge>& edges, double up_sigma) {
+std::vector<Pose> solved_densely(std::vector<Pose> poses, const std::vector<GraphEdge>& edges,
+                                 double up_sigma) {
   const auto unknowns = static_cast<Eigen::Index>(6 * (poses.size() - 1));
   const auto residuals = [&](const std::vector<Pose>& at) {
     Eigen::VectorXd all(static_cast<Eigen::Index>(6 * edges.size() + 2 * (at.size() - 1)));

@@ -72,6 +72,14 @@ TEST(IncludeDirection, WhatServesAFlightKnowsItsRecordOnly) {
   expect_none("sdk/flight", {"sdk/live"});
   expect_none("core_stack", {"boost/asio", "boost/beast"});
 }
+// Loops are closed offline, above the maps: nothing that flies knows of them.
+TEST(IncludeDirection, NothingThatFliesKnowsOfLoops) {
+  expect_none("core_stack/loops", {"core_stack/planning", "core_stack/control", "core_stack/objects",
+                                   "core_stack/homing", "core_stack/team", "core_stack/mission"});
+  for (const char* flies : {"common", "vehicle", "perception", "localization", "mapping", "planning",
+                            "control", "objects", "homing", "team", "mission"})
+    expect_none(std::string("core_stack/") + flies, {"core_stack/loops"});
+}
 // Maps are merged offline: nobody but a command asks for it.
 TEST(IncludeDirection, MapMergingKnowsNothingOfCampaignsAndFlights) {
   expect_none("sdk/map_merge",
