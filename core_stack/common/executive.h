@@ -28,11 +28,15 @@
 
 namespace karst::core {
 
-enum class Lane { sensing, localization, map, pictures };
+enum class Lane { sensing, localization, map, pictures, registration };
+constexpr std::size_t kLanes = 5;
 constexpr auto names_of(Lane) {
   using enum Lane;
-  return std::to_array<Named<Lane>>(
-      {{sensing, "sensing"}, {localization, "localization"}, {map, "map"}, {pictures, "pictures"}});
+  return std::to_array<Named<Lane>>({{sensing, "sensing"},
+                                     {localization, "localization"},
+                                     {map, "map"},
+                                     {pictures, "pictures"},
+                                     {registration, "registration"}});
 }
 
 /// Wall-clock cost of one named step or job, for timing.json only: nothing decides by it.
@@ -128,12 +132,12 @@ class Executive {
   RealTimeSetup setup_;
   TimeNs begin_ = 0;                        // of the run by the machine's clock, in real time
   std::vector<std::shared_ptr<Job>> late_;  // in real time: beyond their budget
-  std::array<TimeNs, 4> lateness_{};        // by lane, since last asked
+  std::array<TimeNs, kLanes> lateness_{};   // by lane, since last asked
   TimeNs lost_time_ = 0;
   TimeNs now_ = 0;
   std::uint64_t next_sequence_ = 0;
-  std::vector<Event> queue_;                        // heap on (time, sequence)
-  std::array<std::unique_ptr<Worker>, 4> workers_;  // by lane; all or none
+  std::vector<Event> queue_;                             // heap on (time, sequence)
+  std::array<std::unique_ptr<Worker>, kLanes> workers_;  // by lane; all or none
   std::vector<std::unique_ptr<Periodic>> periodic_;
   std::map<std::string, int> under_way_;  // an entry for every job's name that ever was
   static const std::string kNoName;

@@ -10,7 +10,7 @@
 
 #include "core_stack/common/options.h"
 #include "core_stack/common/time.h"
-#include "core_stack/loops/place_descriptor.h"
+#include "core_stack/mapping/registration/place_descriptor.h"
 
 namespace karst::core {
 

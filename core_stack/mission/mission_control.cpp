@@ -42,6 +42,7 @@ MissionControl::MissionControl(const CoreOptions& options, Vehicle& vehicle, Exe
       take_off_(onboard_, phases_, path_),
       team_(in_team(team)),
       sensors_(onboard_, sensor_wiring()),
+      earlier_map_(onboard_),
       exploration_(onboard_, {phases_, goals_, path_, flown_path_, endurance_}, exploration_wiring()),
       steering_(onboard_, {phases_, goals_, path_}),
       return_home_(onboard_,
@@ -293,9 +294,10 @@ void MissionControl::fly_phase() {
       take_off();
       break;
     case Phase::look:
-      if (onboard_.flight.at_rest(now() - kLastLook)) enter(Phase::explore, "");
+      look();
       break;
     case Phase::explore:
+      earlier_map_.step();
       exploration_.step();
       steering_.step();
       return_home_.watch_time();
@@ -351,9 +353,20 @@ void MissionControl::take_off() {
   flown_path_.begin(hover);
   return_home_.set_home(hover);
   // A vehicle that sees all around need not turn to look around.
+  if (onboard_.vehicle.lidar && earlier_map_.undecided())
+    return enter(Phase::look, "it looks for its place in the earlier map");
   if (onboard_.vehicle.lidar) return enter(Phase::explore, "");
   onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
   enter(Phase::look, "");
+}
+
+void MissionControl::look() {
+  earlier_map_.step();
+  if (earlier_map_.undecided() || !onboard_.flight.at_rest(now() - kLastLook)) return;
+  const std::string& refusal = earlier_map_.refusal();
+  if (refusal.empty()) return enter(Phase::explore, "");
+  onboard_.recorder.write(now(), event::Safety{SafetyAction::land, refusal});
+  enter(Phase::land, refusal);
 }
 
 /// Lands as in an emergency: where the ground is known to be suitable.

@@ -4,7 +4,7 @@
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done       (state/phase.cpp)
 //   and manual, while the pilot or the autopilot steers
 //
-// Each part owns its state: SensorPipeline (localization, mapping), Exploration and GoalTracker,
+// Each part owns its state: SensorPipeline (localization, mapping), EarlierMapSearch, Exploration and GoalTracker,
 // PathExecution, Steering, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class
 // wires them.
 #pragma once
@@ -14,6 +14,7 @@
 
 #include "core_stack/mission/flight/step_watch.h"
 #include "core_stack/mission/object_search.h"
+#include "core_stack/mission/phases/earlier_map_search.h"
 #include "core_stack/mission/phases/exploration.h"
 #include "core_stack/mission/phases/return_home.h"
 #include "core_stack/mission/phases/steering.h"
@@ -114,6 +115,7 @@ class MissionControl final : public VehicleSink {
   void note_verdict(const SafetyVerdict& before);
   void react(const SafetyVerdict& before);
   void take_off();
+  void look();
   void end_flight(const char* reason, double max_path_m) noexcept;
   void land_here(const std::string& reason);
   void land();
@@ -146,6 +148,7 @@ class MissionControl final : public VehicleSink {
   TakeOff take_off_;
   std::optional<InTeam> team_;
   SensorPipeline sensors_;
+  EarlierMapSearch earlier_map_;
   Exploration exploration_;
   Steering steering_;
   ReturnHome return_home_;

@@ -13,6 +13,7 @@
 #include "core_stack/common/stall_watch.h"
 #include "sdk/evaluation/metrics/metrics.h"
 #include "sdk/evaluation/team/run_ending.h"
+#include "sdk/flight/known_map.h"
 #include "sdk/flight/known_survey.h"
 #include "sdk/flight/real_time.h"
 #include "sdk/flight/recorded_vehicle.h"
@@ -95,10 +96,10 @@ struct MissionFlight::Running {
 };
 
 MissionFlight::MissionFlight(const Mission& mission, const FlightRequest& request)
-    : mission_(with_survey(mission,
-                           [&](const std::string& note) {
-                             if (request.notes) print_error("note: %s\n", note.c_str());
-                           })),
+    : mission_(with_earlier_map(with_survey(mission,
+                                            [&](const std::string& note) {
+                                              if (request.notes) print_error("note: %s\n", note.c_str());
+                                            }))),
       request_(request),
       members_(missions_of_members(mission_)) {
   if (is_team(mission_)) refuse_for_team(request_);

@@ -23,6 +23,7 @@ using core::OptionTable;
 constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto",
                      *kSelection = "policy.selection";
 constexpr const char *kSurveySection = "survey", *kRegionSection = "region";
+constexpr const char* kEarlierMapKeys[] = {"start", "start_digest", "required", "search_time"};
 constexpr const char *kPolicyVersion = "policy.version", *kKarstVersion = "karst.version";
 
 struct AutoKeys {
@@ -51,6 +52,21 @@ void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr)
         "or 0 0 0 for a cave without them");
     s.add("hints", m.survey.hints,
           "tell the policy of it; false: only what the survey lacks is counted, for comparisons");
+  });
+  t.under("map", [&m](OptionTable& s) {
+    s.add("start", m.earlier.start, {},
+          "map of an earlier flight of the same cave, in which the vehicle looks for its place: a run "
+          "directory, "
+          "or its map.bt or map.ot; relative to the mission file");
+    s.add("start_digest", m.earlier.digest, {},
+          "SHA-256 of the file of map.start, which is recorded; another one is refused; empty: any");
+    s.add("required", m.core.earlier.required,
+          "the vehicle lands before it explores if it does not find its place in map.start; else it explores "
+          "as "
+          "without the map");
+    s.add(
+        "search_time", m.core.earlier.search_time_s, "s", 0, 3600,
+        "after the first hover, the vehicle looks for its place in map.start again and again for this long");
   });
   t.section(kRegionSection, m.region);
   t.under("record", [&m](OptionTable& r) {
@@ -209,6 +225,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   m.cave = core::beside(file, m.cave);
   m.core.team.key_file = core::beside(file, m.core.team.key_file);
   m.survey.file = core::beside(file, m.survey.file);
+  m.earlier.start = core::beside(file, m.earlier.start);
   const std::string recorded_policy = m.policy;
   if (!overrides.cave.empty()) {  // another cave, another start and mesh
     m.cave = overrides.cave;
@@ -240,6 +257,10 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
       throw InputError(m.file, "survey.offset", "is of no use without survey.file");
     m.resolved.erase(kSurveySection);
   }
+  if (m.earlier.start.empty()) {
+    if (m.core.earlier.required) throw InputError(m.file, "map.required", "is of no use without map.start");
+    for (const char* key : kEarlierMapKeys) m.resolved.get_child("map").erase(key);
+  }
   m.core.region = core::region_of(m.file, m.region);
   if (!m.core.region) m.resolved.erase(kRegionSection);
   return m;
@@ -261,6 +282,10 @@ pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters,
   if (!m.survey.file.empty()) {
     tree.put("survey.file", std::filesystem::absolute(m.survey.file).lexically_normal().string());
     tree.put("survey.offset", m.survey.offset);
+  }
+  if (!m.earlier.start.empty()) {
+    tree.put("map.start", std::filesystem::absolute(m.earlier.start).lexically_normal().string());
+    tree.put("map.start_digest", m.earlier.digest);
   }
   tree.put("policy.name", m.policy);
   if (!policy_parameters.empty()) tree.put_child(kParameters, policy_parameters);

@@ -43,6 +43,11 @@ struct SurveyKeys {
   bool hints = true;
 };
 
+/// Keys of the map of an earlier flight.
+struct EarlierMapKeys {
+  std::string start, digest;  // "": none; "": whatever the file holds
+};
+
 /// What of the vehicle's messages the flight keeps (docs/run_directory.md).
 struct RecordKeys {
   bool scans = false;
@@ -53,6 +58,7 @@ struct Mission {
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
   core::MeshKeys mesh;  // of a cave that is a bare mesh
   SurveyKeys survey;
+  EarlierMapKeys earlier;
   core::RegionKeys region;
   RecordKeys record;
   std::int64_t seed = 1, policy_stream = 0;

@@ -108,6 +108,7 @@ ThreadRole role_of(core::Lane lane) {
     case core::Lane::map:
       return ThreadRole::map;
     case core::Lane::pictures:
+    case core::Lane::registration:
       break;
   }
   return ThreadRole::pictures;

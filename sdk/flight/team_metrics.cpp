@@ -44,8 +44,10 @@ ordered_json begin_team_metrics(const TeamFlightFacts& flight, const std::vector
   m["reason"] = flight.reason;
   for (const evaluation::MetricDefinition& d : evaluation::metric_definitions())
     m[std::string(d.name)] = nullptr;
-  // What the mission's survey lacks is counted by each robot alone.
-  for (const char* of_one : {"unsurveyed_volume_m3", "time_to_unsurveyed_50_s"}) m.erase(of_one);
+  // What the mission's survey lacks is counted by each robot alone, and a team has no earlier map.
+  for (const char* of_one : {"unsurveyed_volume_m3", "time_to_unsurveyed_50_s", "earlier_map_found",
+                             "earlier_volume_m3", "added_volume_m3"})
+    m.erase(of_one);
   add_sums(m, robots);
   return m;
 }

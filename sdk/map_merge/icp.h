@@ -4,16 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "sdk/map_merge/map_piece.h"
+#include "core_stack/mapping/registration/map_registration.h"
 
 namespace karst::map_merge {
 
-/// One stage: pairs points up to `reach_m` apart, with an even sample of the source's points.
-struct IcpRound {
-  double correspondence_m;
-  int iterations;
-  std::size_t max_points;
-};
+using core::IcpRound;
+using core::MapPiece;
 
 /// False if karst was built without PCL: then no Icp can be made.
 bool has_icp();

@@ -111,6 +111,11 @@ struct Words {
     return line<event::Localization>(good ? Severity::info : Severity::warn,
                                      sentence(good ? "localized" : "not localized", {e.reason}));
   }
+  Result operator()(const event::EarlierMap& e) const {
+    const bool found = e.state == event::EarlierMapState::found;
+    return line<event::EarlierMap>(found ? Severity::info : Severity::warn,
+                                   sentence(std::string("place in the earlier map ") + name_of(e.state), {e.reason}));
+  }
   Result operator()(const event::Landing& e) const {
     return line<event::Landing>(
         Severity::info, sentence(std::string("landing place ") + name_of(e.state), {e.reason.value_or("")}));

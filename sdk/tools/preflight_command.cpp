@@ -17,6 +17,7 @@
 #include "plugins/simulator/simulator_options.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/flight/auto_policy.h"
+#include "sdk/flight/known_map.h"
 #include "sdk/flight/mission_file.h"
 #include "sdk/host/plugin/selection.h"
 #include "sdk/preflight/look.h"
@@ -68,7 +69,7 @@ flight::Mission mission_of(const PreflightArguments& args) {
   add_setting(overrides, "--vehicle", kVehicleKey, args.vehicle);
   add_setting(overrides, "--battery", kBatteryKey, args.battery);
   for (const auto& [key, value] : args.mesh) overrides.values.emplace_back("cave." + key, value);
-  return flight::read_mission(args.mission_file, overrides);
+  return flight::with_earlier_map(flight::read_mission(args.mission_file, overrides));
 }
 
 /// A file of a mission, and not of a cave, has one of these sections.

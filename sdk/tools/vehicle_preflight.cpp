@@ -8,6 +8,7 @@
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/flight/auto_policy.h"
 #include "sdk/flight/flight_setup.h"
+#include "sdk/flight/known_map.h"
 #include "sdk/flight/loaded_policies.h"
 #include "sdk/preflight/vehicle/listen.h"
 #include "sdk/preflight/vehicle/vehicle_page.h"
@@ -62,7 +63,8 @@ bool is_vehicle(const std::string& name) {
 }
 
 bool vehicle_preflight(const VehiclePreflightArguments& args) {
-  const flight::Mission mission = flight::read_mission(args.mission_file, args.overrides);
+  const flight::Mission mission =
+      flight::with_earlier_map(flight::read_mission(args.mission_file, args.overrides));
   if (flight::is_team(mission))
     throw core::InputError(mission.file, "team.robots", "a preflight is for one vehicle, not for a team");
   const flight::FlightRequest request = request_of(args);

@@ -167,6 +167,21 @@ std::vector<CellChange> VoxelMap::declare_free(const Vec3& center, double radius
   return changes;
 }
 
+std::vector<CellChange> VoxelMap::fill_unknown(std::span<const CellValue> cells) {
+  Storage& s = *storage_;
+  ++s.revision;
+  std::vector<CellChange> changes;
+  for (const CellValue& c : cells) {
+    if (!in_world(c.key) || at(c.key) != Cell::unknown) continue;
+    const BlockId id = block_of(c.key);
+    const float value = std::round(c.log_odds * kLogOddsScale);
+    s.set(s.blocks.find_or_add(id), corner_of(id), local_of(c.key),
+          static_cast<std::int16_t>(std::clamp<float>(value, s.low, s.high)), changes);
+  }
+  sort_by_key(changes);
+  return changes;
+}
+
 void VoxelMap::assign(const CellKey& low, std::int32_t edge_cells, float log_odds) {
   Storage& s = *storage_;
   ++s.revision;

@@ -48,6 +48,12 @@ struct CellChange {
   Cell before, after;
 };
 
+/// A cell and the log-odds that it is occupied.
+struct CellValue {
+  CellKey key;
+  float log_odds;
+};
+
 class VoxelMap {
  public:
   explicit VoxelMap(const MapOptions& options);
@@ -72,6 +78,9 @@ class VoxelMap {
   /// Declares a ball free (the launch site, which the operator guarantees to be free); known cells keep their
   /// value.
   std::vector<CellChange> declare_free(const Vec3& center, double radius_m);
+  /// Gives cells that are unknown these values, as of an earlier map; known cells keep theirs. Cells outside
+  /// the world are ignored. Returns the cells whose class changed, sorted by key.
+  std::vector<CellChange> fill_unknown(std::span<const CellValue> cells);
 
   /// Gives every cell of a cube the same log-odds, clamped to the storable range (+-7.9); for maps read from
   /// storage or drawn by hand. Cells of the cube outside the world are ignored.

@@ -31,6 +31,10 @@ class Explorer {
   /// Integrates one sensor's rays into the map; returns the changed cells.
   std::vector<CellChange> integrate(const std::vector<Ray>& rays);
   std::vector<CellChange> declare_launch_site(const Vec3& hover_point);
+  /// See WorldModel::take_earlier.
+  std::vector<CellChange> take_earlier(std::span<const CellValue> cells) {
+    return world_.take_earlier(cells);
+  }
 
   /// Notes a picture of the vehicle's colour camera, taken from that pose.
   void note_picture(const Pose& T_world_camera);

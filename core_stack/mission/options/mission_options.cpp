@@ -1,6 +1,7 @@
 #include "core_stack/mission/options/mission_options.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/format_text.h"
@@ -59,6 +60,12 @@ void check(const CoreOptions& o, const VehicleDescription& vehicle) {
   if (!vehicle.pose_sensor && (o.localization.source == PoseSource::pose_sensor || !vehicle.lidar))
     refuse("localization.source", "the vehicle " + vehicle.name + " has no pose sensor" +
                                       (vehicle.lidar ? "" : ", nor a LiDAR to locate itself with"));
+  if (o.earlier.map && !vehicle.lidar)
+    refuse("map.start", "the vehicle " + vehicle.name +
+                            " has no LiDAR, without which it cannot find its place in an earlier map");
+  if (o.earlier.map && std::abs(o.earlier.map->piece.resolution_m / o.map.resolution_m - 1) > 0.01)
+    refuse("map.start", o.earlier.map->name + " has cells of " + metres(o.earlier.map->piece.resolution_m) +
+                            ", and map.resolution is " + metres(o.map.resolution_m));
   // Obstacles are cells, whose surface may lie half an edge nearer than their centre.
   const double min_m = vehicle.radius_m + o.map.resolution_m / 2;
   if (o.planning.clearance_m < min_m)

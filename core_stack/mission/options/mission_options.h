@@ -7,6 +7,7 @@
 #include "core_stack/localization/localization_options.h"
 #include "core_stack/mapping/frontiers/frontiers.h"
 #include "core_stack/mapping/occupancy/voxel_map.h"
+#include "core_stack/mapping/prior/earlier_map.h"
 #include "core_stack/mapping/prior/surveyed_passages.h"
 #include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/mission/options/safety_options.h"
@@ -43,6 +44,14 @@ struct KnownSurvey {
   bool told_to_policy = true;                        // else it is only counted what it lacks
 };
 
+/// The map of an earlier flight, in which this one looks for its place. It stands in no table: who flies the
+/// mission reads the map, and describes its keys.
+struct KnownMap {
+  std::shared_ptr<const EarlierMap> map;  // null: the mission has none
+  bool required = false;                  // without its place in it, the vehicle lands before it explores
+  double search_time_s = 120;             // after take-off, how long it looks for its place
+};
+
 struct CoreOptions {
   MissionOptions mission;
   SafetyOptions safety;
@@ -58,6 +67,7 @@ struct CoreOptions {
   TeamOptions team;  // described separately: a single vehicle has none
   HomingOptions homing;
   KnownSurvey survey;
+  KnownMap earlier;
   std::shared_ptr<const FlightRegion> region;  // null: it may fly everywhere; described by RegionKeys
 };
 void describe(OptionTable& t, CoreOptions& o);

@@ -306,6 +306,33 @@ struct Team {
   }
 };
 
+/// Of the map of an earlier flight: whether the vehicle found its place in it.
+enum class EarlierMapState { found, not_found, given_up };
+constexpr auto names_of(EarlierMapState) {
+  using enum EarlierMapState;
+  return std::to_array<Named<EarlierMapState>>(
+      {{found, "found"}, {not_found, "not found"}, {given_up, "given up"}});
+}
+struct EarlierMap {
+  static constexpr const char* kKind = "earlier_map";
+  EarlierMapState state{};
+  std::string reason;  // "" if it was found
+  int attempt = 0;
+  std::optional<Vec3> position = {};  // of the earlier map's origin in the flight, as the next
+  std::optional<double> heading_rad = {};
+  std::optional<double> overlap = {}, agreement = {}, residual_m = {}, hold = {}, rival = {};
+  std::optional<double> free_m3 = {};  // of the earlier map, if it was found
+  static constexpr auto fields() {
+    return std::make_tuple(
+        Field{"state", &EarlierMap::state}, Field{"reason", &EarlierMap::reason},
+        Field{"attempt", &EarlierMap::attempt}, Field{"position", &EarlierMap::position},
+        Field{"heading", &EarlierMap::heading_rad}, Field{"overlap", &EarlierMap::overlap},
+        Field{"agreement", &EarlierMap::agreement}, Field{"residual", &EarlierMap::residual_m},
+        Field{"hold", &EarlierMap::hold}, Field{"rival", &EarlierMap::rival},
+        Field{"free_m3", &EarlierMap::free_m3});
+  }
+};
+
 struct Outcome {
   static constexpr const char* kKind = "outcome";
   MissionOutcome outcome{};
@@ -319,7 +346,7 @@ struct Outcome {
 
 using Event =
     std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log, Homing,
-                 Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team, Outcome>;
+                 Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team, EarlierMap, Outcome>;
 
 /// The line without its end: {"t": ..., "kind": ..., and the fields by name}.
 std::string line_of(TimeNs t, const Event& event);

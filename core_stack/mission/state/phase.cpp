@@ -10,9 +10,11 @@ namespace {
 
 constexpr std::array kTransitions{
     Transition{Phase::standby, Phase::takeoff, "the estimate has settled, and no vehicle is near the hover"},
-    Transition{Phase::takeoff, Phase::look, "it hovers, and its cameras see one side only"},
+    Transition{Phase::takeoff, Phase::look,
+               "it hovers, and its cameras see one side only, or it looks for its place in an earlier map"},
     Transition{Phase::takeoff, Phase::explore, "it hovers, and its LiDAR sees all around"},
-    Transition{Phase::look, Phase::explore, "it has turned around once"},
+    Transition{Phase::look, Phase::explore,
+               "it has turned around once, or knows whether it has a place in the earlier map"},
     Transition{
         Phase::explore, Phase::home,
         "nothing is left to explore, the policy or the safety supervisor asks for it, the time left only "

@@ -40,6 +40,10 @@ std::vector<CellChange> WorldModel::declare_launch_site(const Vec3& hover_point)
   return take_in(map_.declare_free(hover_point, launch_clear_radius_m_));
 }
 
+std::vector<CellChange> WorldModel::take_earlier(std::span<const CellValue> cells) {
+  return take_in(map_.fill_unknown(cells));
+}
+
 void WorldModel::note_picture(const Pose& T_world_camera) {
   if (rgb_) imaged_.take(map_, T_world_camera, *rgb_);
 }

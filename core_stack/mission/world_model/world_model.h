@@ -22,6 +22,8 @@ class WorldModel {
   /// Integrates one sensor's rays into the map; returns the changed cells.
   std::vector<CellChange> integrate(const std::vector<Ray>& rays);
   std::vector<CellChange> declare_launch_site(const Vec3& hover_point);
+  /// Takes cells of an earlier map in where nothing is known yet; returns the changed cells.
+  std::vector<CellChange> take_earlier(std::span<const CellValue> cells);
   /// Notes a picture of the vehicle's colour camera, taken from that pose.
   void note_picture(const Pose& T_world_camera);
 

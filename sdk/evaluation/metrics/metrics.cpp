@@ -11,6 +11,7 @@
 #include "core_stack/mapping/octomap/octomap_io.h"
 #include "sdk/evaluation/accuracy/map_error.h"
 #include "sdk/evaluation/metrics/coverage_curve.h"
+#include "sdk/evaluation/metrics/earlier_map.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 #include "sdk/evaluation/metrics/object_figures.h"
 #include "sdk/evaluation/metrics/unsurveyed.h"
@@ -138,6 +139,12 @@ bool flies_in_region(const RunRecord& run) {
                      [](const Setting& s) { return s.key.starts_with("region."); });
 }
 
+/// Of the explored volume, what the earlier map lacks.
+std::optional<double> added_m3(std::optional<double> explored_m3, std::optional<double> earlier_m3) {
+  if (!explored_m3 || !earlier_m3) return std::nullopt;
+  return std::max(0.0, *explored_m3 - *earlier_m3);
+}
+
 }  // namespace
 
 ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Truth& truth) {
@@ -214,6 +221,11 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
   if (const auto beyond = unsurveyed_figures(run)) {
     m["unsurveyed_volume_m3"] = value(beyond->volume_m3);
     m["time_to_unsurveyed_50_s"] = value(beyond->time_to_50_s);
+  }
+  if (const auto earlier = earlier_map_figures(run)) {
+    m["earlier_map_found"] = earlier->found ? 1 : 0;
+    m["earlier_volume_m3"] = value(earlier->earlier_m3);
+    m["added_volume_m3"] = value(added_m3(volume.explored_m3, earlier->earlier_m3));
   }
   return m;
 }

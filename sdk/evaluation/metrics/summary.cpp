@@ -56,6 +56,10 @@ std::string achievement_of(const ordered_json& metrics, const Ending& ending) {
     text += part(", %.0f m³ beyond the survey", beyond_m3);
     text += part(" (50 m³ after %.0f s)", number_of(metrics, "time_to_unsurveyed_50_s"));
   }
+  if (const auto added_m3 = number_of(metrics, "added_volume_m3"))
+    text += part(", %.0f m³ of it not in the earlier map", added_m3);
+  else if (number_of(metrics, "earlier_map_found"))
+    text += ", its place in the earlier map not found";
   const auto clearance_m = number_of(metrics, "min_clearance_m");
   if (clearance_m && *clearance_m > 0) text += part(", %.2f m or more from rock", clearance_m);
   return text;

@@ -25,6 +25,8 @@ function eventText(e) {
     case "frontier": return `${e.state} ${placeText(e.position)}${because(e.reason)}`;
     case "safety": return `${e.action}${because(e.reason)}`;
     case "object": case "object_known": return `${e.what || "object"} ${e.number} ${e.state || ""} ${placeText(e.position)}`;
+    case "earlier_map":
+      return `place in the earlier map ${e.state}${because(e.reason)}${typeof e.overlap === "number" ? ` (overlap ${Math.round(100 * e.overlap)} %)` : ""}`;
     case "outcome": return `${e.outcome}${because(e.reason)}`;
     case "log": case "truth": return e.text || "";
     default: {

@@ -47,6 +47,18 @@ TEST(Summary, WithASurveySaysWhatLiesBeyondIt) {
   EXPECT_NE(achievement_of(m, kWentHome).find("in 40 s, 3 m³ beyond the survey, 0.38 m"), std::string::npos);
 }
 
+TEST(Summary, WithAnEarlierMapSaysWhatIsNew) {
+  ordered_json m = metrics();
+  m["earlier_map_found"] = 1;
+  m["added_volume_m3"] = 211.4;
+  EXPECT_NE(achievement_of(m, kWentHome).find("in 40 s, 211 m³ of it not in the earlier map, 0.38 m"),
+            std::string::npos);
+  m["earlier_map_found"] = 0;
+  m["added_volume_m3"] = nullptr;
+  EXPECT_NE(achievement_of(m, kWentHome).find("in 40 s, its place in the earlier map not found, 0.38 m"),
+            std::string::npos);
+}
+
 TEST(Summary, OfAFlightThatTouchedRockClaimsNoClearance) {
   ordered_json m = metrics();
   m["min_clearance_m"] = -0.01;

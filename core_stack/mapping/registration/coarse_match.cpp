@@ -1,22 +1,14 @@
-#include "sdk/map_merge/coarse_match.h"
+#include "core_stack/mapping/registration/coarse_match.h"
 
 #include <algorithm>
 #include <numeric>
 
 #include "core_stack/mapping/obstacles/thinned_out.h"
-#include "sdk/map_merge/map_overlay.h"
+#include "core_stack/mapping/registration/map_overlay.h"
 
-namespace karst::map_merge {
+namespace karst::core {
 namespace {
 
-using core::PlaceDescriptor;
-using core::PlaceFrame;
-using core::PointTree;
-using core::Pose;
-using core::Quat;
-using core::thinned_out;
-using core::Vec3;
-using core::Vec3f;
 
 constexpr double kThin_m = 0.4;        // spacing of the points for descriptors
 constexpr double kRough_m = 0.4;       // cells of the quick score: rock counts as thickened to 1.2 m
@@ -106,9 +98,8 @@ std::vector<Pose> matched_poses(const MapPiece& target, const MapPiece& source, 
     const Eigen::VectorXf likeness = to_all.transpose() * from.descriptors[s].invariants();
     for (const std::size_t t : largest(likeness, options.candidates)) {
       const double turn = to.descriptors[t].turn_of(from.descriptors[s]).angle_rad;
-      const Quat R =
-          (to.frames[t].orientation * core::from_heading(turn) * from.frames[s].orientation.conjugate())
-              .normalized();
+      const Quat R = (to.frames[t].orientation * from_heading(turn) * from.frames[s].orientation.conjugate())
+                         .normalized();
       poses.push_back({to.frames[t].position - R * from.frames[s].position, R});
     }
   }
@@ -158,4 +149,4 @@ std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& sou
   return distinct;
 }
 
-}  // namespace karst::map_merge
+}  // namespace karst::core

@@ -1,8 +1,8 @@
 // How well two maps fit when one is transformed to the other.
 #pragma once
-#include "sdk/map_merge/map_piece.h"
+#include "core_stack/mapping/registration/map_piece.h"
 
-namespace karst::map_merge {
+namespace karst::core {
 
 /// Counts of one piece's surface points in the other map: `near` its rock, `in_free` in its known free space;
 /// the rest lies in space unknown to the other map.
@@ -32,7 +32,7 @@ struct OverlayOptions {
   std::size_t max_points = 20000;  // of each map, evenly picked
 };
 
-Overlay overlay(const MapPiece& target, const MapPiece& source, const core::Pose& T_target_source,
+Overlay overlay(const MapPiece& target, const MapPiece& source, const Pose& T_target_source,
                 const OverlayOptions& options);
 
 /// A quick score for very many poses: the target's thickened rock and its free space, in cells of `cell_m`.
@@ -40,10 +40,10 @@ class RoughTarget {
  public:
   RoughTarget(const MapPiece& target, double cell_m);
   /// (points in rock - 2 * points in free space) / number of points.
-  double score(const std::vector<core::Vec3>& source_points, const core::Pose& T_target_source) const;
+  double score(const std::vector<Vec3>& source_points, const Pose& T_target_source) const;
 
  private:
-  core::VoxelMap cells_;
+  VoxelMap cells_;
 };
 
-}  // namespace karst::map_merge
+}  // namespace karst::core

@@ -1,4 +1,4 @@
-#include "sdk/map_merge/map_registration.h"
+#include "core_stack/mapping/registration/map_registration.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -6,14 +6,9 @@
 
 #include "core_stack/common/format_text.h"
 
-namespace karst::map_merge {
+namespace karst::core {
 namespace {
 
-using core::format_text;
-using core::OptionTable;
-using core::Pose;
-using core::Vec3;
-using core::Vec3f;
 
 struct Candidate {
   Pose T_target_source;
@@ -138,7 +133,7 @@ double hold_of(const MapPiece& target, const MapPiece& source, const Pose& T_tar
 }
 
 MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
-                              const MapRegistrationOptions& options) {
+                              const MapRegistrationOptions& options, const RefinePose& refine) {
   const double cell_m = std::max(target.resolution_m, source.resolution_m);
   const bool free_known = target.knows_free_space() || source.knows_free_space();
   MapRegistration result;
@@ -147,18 +142,17 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
     result.reason = "the maps show too little rock to find places that look alike";
     return result;
   }
-  const Icp icp(target);
   const Vec3 middle = middle_of(source);
   OverlayOptions glance = options.overlay;
   glance.max_points = 2000;
   std::vector<Candidate> candidates;
   for (const CoarsePose& c : coarse) {
-    const Pose T = icp.refine(source, c.T_target_source, options.quick);
+    const Pose T = refine(source, c.T_target_source, options.quick);
     candidates.push_back({T, overlay(target, source, T, glance)});
   }
   candidates = distinct_best(std::move(candidates), options.finalists, middle, cell_m);
   for (Candidate& c : candidates) {
-    c.T_target_source = icp.refine(source, c.T_target_source, options.thorough);
+    c.T_target_source = refine(source, c.T_target_source, options.thorough);
     c.overlay = overlay(target, source, c.T_target_source, options.overlay);
   }
   const auto best = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
@@ -179,4 +173,4 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
   return result;
 }
 
-}  // namespace karst::map_merge
+}  // namespace karst::core

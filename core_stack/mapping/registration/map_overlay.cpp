@@ -1,21 +1,13 @@
-#include "sdk/map_merge/map_overlay.h"
+#include "core_stack/mapping/registration/map_overlay.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core_stack/mapping/occupancy/voxel_reader.h"
 
-namespace karst::map_merge {
+namespace karst::core {
 namespace {
 
-using core::Cell;
-using core::CellKey;
-using core::MapOptions;
-using core::Pose;
-using core::Vec3;
-using core::Vec3f;
-using core::VoxelMap;
-using core::VoxelReader;
 
 // Rock in known free space has a larger weight than rock that fits: the walls of any two passages can fit,
 // while two maps of one place hardly ever contradict each other.
@@ -101,4 +93,4 @@ double RoughTarget::score(const std::vector<Vec3>& source_points, const Pose& T_
   return source_points.empty() ? 0 : score / static_cast<double>(source_points.size());
 }
 
-}  // namespace karst::map_merge
+}  // namespace karst::core

@@ -1,4 +1,4 @@
-#include "sdk/map_merge/map_piece.h"
+#include "core_stack/mapping/registration/map_piece.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -6,15 +6,9 @@
 #include "core_stack/mapping/obstacles/plane_normal.h"
 #include "core_stack/mapping/obstacles/thinned_out.h"
 
-namespace karst::map_merge {
+namespace karst::core {
 namespace {
 
-using core::Cell;
-using core::CellKey;
-using core::PointTree;
-using core::Vec3;
-using core::Vec3f;
-using core::VoxelMap;
 
 constexpr double kNormalRadiusCells = 4;
 
@@ -33,8 +27,7 @@ void complete(MapPiece& piece) {
   piece.tree = std::make_shared<PointTree>(piece.surface);
   piece.normals.reserve(piece.surface.size());
   for (const Vec3f& p : piece.surface) {
-    Vec3f n =
-        core::plane_normal(piece.tree->points(),
+    Vec3f n = plane_normal(piece.tree->points(),
                            piece.tree->within(p.cast<double>(), kNormalRadiusCells * piece.resolution_m), p);
     if (piece.cells && !points_to_free(*piece.cells, p, n)) n = -n;
     piece.normals.push_back(n);
@@ -57,9 +50,9 @@ MapPiece piece_of(std::shared_ptr<const VoxelMap> map) {
 MapPiece piece_of(const std::vector<Vec3f>& cloud, double resolution_m) {
   MapPiece piece;
   piece.resolution_m = resolution_m;
-  piece.surface = core::thinned_out(cloud, resolution_m);
+  piece.surface = thinned_out(cloud, resolution_m);
   complete(piece);
   return piece;
 }
 
-}  // namespace karst::map_merge
+}  // namespace karst::core

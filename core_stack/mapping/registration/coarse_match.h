@@ -1,9 +1,9 @@
 // Candidate poses of one map in another, without prior knowledge except, perhaps, gravity: similar places.
 #pragma once
-#include "core_stack/loops/place_descriptor.h"
-#include "sdk/map_merge/map_piece.h"
+#include "core_stack/mapping/registration/map_piece.h"
+#include "core_stack/mapping/registration/place_descriptor.h"
 
-namespace karst::map_merge {
+namespace karst::core {
 
 struct CoarseOptions {
   bool gravity_known = true;  // both maps' z axes point up
@@ -17,7 +17,7 @@ struct CoarseOptions {
 };
 
 struct CoarsePose {
-  core::Pose T_target_source;
+  Pose T_target_source;
   double score;   // by RoughTarget
   int votes = 1;  // number of matches that imply this pose
 };
@@ -29,6 +29,6 @@ std::vector<CoarsePose> coarse_poses(const MapPiece& target, const MapPiece& sou
                                      const CoarseOptions& options);
 
 /// Whether two poses differ by less than the limits in the displacement of the map's middle and in rotation.
-bool alike(const core::Pose& a, const core::Pose& b, const core::Vec3& middle, double metres, double radians);
+bool alike(const Pose& a, const Pose& b, const Vec3& middle, double metres, double radians);
 
-}  // namespace karst::map_merge
+}  // namespace karst::core

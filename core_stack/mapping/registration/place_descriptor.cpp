@@ -1,4 +1,4 @@
-#include "core_stack/loops/place_descriptor.h"
+#include "core_stack/mapping/registration/place_descriptor.h"
 
 #include <algorithm>
 #include <complex>

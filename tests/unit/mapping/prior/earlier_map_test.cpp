@@ -1,0 +1,172 @@
+// A vehicle's place in a map of earlier: found in the map of the same tunnel, refused in all others.
+#include "core_stack/mapping/prior/earlier_map.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core_stack/common/random.h"
+#include "tests/unit/map_merge/tunnels.h"
+
+namespace karst::core {
+namespace {
+
+using test::Tunnel;
+
+std::shared_ptr<const EarlierMap> earlier(VoxelMap map) {
+  return earlier_map_of("earlier.bt", std::make_shared<VoxelMap>(std::move(map)));
+}
+
+/// The tunnel's cells at p -> f(p), in cells of the new frame.
+template <class F>
+std::shared_ptr<const VoxelMap> seen_through(const VoxelMap& map, const F& into_map, const Vec3& low,
+                                             const Vec3& high) {
+  auto seen = std::make_shared<VoxelMap>(MapOptions{});
+  const CellKey a = seen->key_of(low), b = seen->key_of(high);
+  for (int z = a.z; z <= b.z; ++z)
+    for (int y = a.y; y <= b.y; ++y)
+      for (int x = a.x; x <= b.x; ++x) {
+        const Cell cell = map.at(into_map(seen->center_of({x, y, z})));
+        if (cell != Cell::unknown) seen->assign({x, y, z}, 1, cell == Cell::free ? -1.0f : 1.0f);
+      }
+  return seen;
+}
+
+const Vec3 kLow(-18, -18, -12), kHigh(18, 18, 12);
+/// The vehicle sees 18 m of tunnel, turned by 2.2 rad.
+const Pose kTruth{Vec3(16, 1, 0.5), from_heading(2.2)};
+
+std::shared_ptr<const VoxelMap> seen_in(const Tunnel& tunnel) {
+  return seen_through(
+      tunnel.map(7, 25), [](const Vec3& p) -> Vec3 { return kTruth * p; }, kLow, kHigh);
+}
+
+TEST(EarlierMap, ThePlaceIsFoundInTheMapOfTheSameTunnel) {
+  const Tunnel tunnel{.phase = 0.4};
+  const MapRegistration r = locate_in(*earlier(tunnel.map(0, 40)), seen_in(tunnel));
+  ASSERT_TRUE(r.trusted) << r.reason;
+  EXPECT_LT((r.T_target_source.position - kTruth.position).norm(), 0.1);
+  EXPECT_LT(r.T_target_source.orientation.angularDistance(kTruth.orientation), 0.01);
+  const MapRegistration again = locate_in(*earlier(tunnel.map(0, 40)), seen_in(tunnel));
+  EXPECT_EQ(again.T_target_source.position, r.T_target_source.position);
+  EXPECT_EQ(again.T_target_source.orientation.coeffs(), r.T_target_source.orientation.coeffs());
+}
+
+TEST(EarlierMap, OtherTunnelsAreRefused) {
+  const Tunnel tunnel{.phase = 0.4};
+  for (const double phase : {2.0, 3.3, 5.1}) {
+    const MapRegistration r = locate_in(*earlier(Tunnel{.phase = phase}.map(0, 40)), seen_in(tunnel));
+    EXPECT_FALSE(r.trusted) << "phase " << phase;
+    EXPECT_NE(r.reason, "");
+  }
+  const MapRegistration elsewhere = locate_in(*earlier(tunnel.map(40, 80)), seen_in(tunnel));
+  EXPECT_FALSE(elsewhere.trusted) << "another part of it";
+}
+
+TEST(EarlierMap, AMirroredAndAScaledMapAreRefused) {
+  const Tunnel tunnel{.phase = 0.4};
+  const auto of = [&](const auto& into_map) {
+    const auto map = seen_through(tunnel.map(0, 40), into_map, Vec3(-5, -20, -12), Vec3(50, 20, 12));
+    return locate_in(*earlier_map_of("m", map), seen_in(tunnel));
+  };
+  ASSERT_TRUE(of([](const Vec3& p) -> Vec3 { return p; }).trusted) << "as it is";
+  EXPECT_FALSE(of([](const Vec3& p) -> Vec3 { return {p.x(), -p.y(), p.z()}; }).trusted);
+  EXPECT_FALSE(of([](const Vec3& p) -> Vec3 { return {p.x(), p.y(), -p.z()}; }).trusted);
+  EXPECT_FALSE(of([](const Vec3& p) -> Vec3 { return 0.85 * p; }).trusted);
+  EXPECT_FALSE(of([](const Vec3& p) -> Vec3 { return 1.2 * p; }).trusted);
+}
+
+TEST(EarlierMap, ASmoothTubeIsRefusedAsItSlides) {
+  const Tunnel tube{.phase = 0, .bend_m = 0, .knobs_m = 0};
+  EXPECT_FALSE(locate_in(*earlier(tube.map(0, 40)), seen_in(tube)).trusted);
+}
+
+TEST(EarlierMap, WithoutRockOrFreeSpaceItIsNone) {
+  VoxelMap rock{MapOptions{}}, free{MapOptions{}};
+  rock.assign({0, 0, 0}, 4, 1.0f);
+  free.assign({0, 0, 0}, 4, -1.0f);
+  EXPECT_THROW(earlier(std::move(rock)), std::invalid_argument);
+  EXPECT_THROW(earlier(std::move(free)), std::invalid_argument);
+  const auto nothing = std::make_shared<VoxelMap>(MapOptions{});
+  EXPECT_EQ(locate_in(*earlier(Tunnel{}.map(0, 10)), nothing).reason, "no rock is seen");
+}
+
+TEST(EarlierMap, MovedCellsKeepAllRockAndInventNoFreeSpace) {
+  const auto map = earlier(Tunnel{.phase = 1.0}.map(0, 12));
+  const VoxelMap& from = *map->piece.cells;
+  const MapOptions options;
+  Random random(5);
+  for (int i = 0; i < 4; ++i) {
+    const Pose T{Vec3(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-2, 2)),
+                 from_heading(random.uniform(-3, 3))};
+    const std::vector<CellValue> cells = moved_cells(*map, T, options);
+    std::map<CellKey, float> by_key;
+    for (const CellValue& c : cells) EXPECT_TRUE(by_key.emplace(c.key, c.log_odds).second) << "twice";
+    from.for_each_known([&](const CellKey& k, Cell cell, float) {
+      if (cell != Cell::occupied) return;
+      const auto there = by_key.find(from.key_of(T * from.center_of(k)));
+      ASSERT_NE(there, by_key.end());
+      EXPECT_GT(there->second, 0);
+    });
+    for (const auto& [key, log_odds] : by_key)
+      if (log_odds < 0) EXPECT_EQ(from.at(T.inverse() * from.center_of(key)), Cell::free);
+  }
+}
+
+/// What is seen now wins over what was seen earlier: a hit over free space, six clear scans over rock.
+TEST(EarlierMap, OneHitOutweighsItsFreeCellsAndFewMissesItsRock) {
+  const auto map = earlier(Tunnel{.phase = 1.0}.map(0, 6));
+  VoxelMap now{MapOptions{}};
+  now.fill_unknown(moved_cells(*map, Pose{}, {}));
+  const CellKey free_cell = now.key_of(Tunnel{.phase = 1.0}.centre(3));
+  ASSERT_EQ(now.at(free_cell), Cell::free);
+  const Vec3f centre = now.center_of(free_cell).cast<float>();
+  now.insert(std::vector<Ray>{{centre + Vec3f(0.6f, 0, 0), centre, true}});
+  EXPECT_EQ(now.at(free_cell), Cell::occupied);
+
+  const Vec3f rock = map->piece.surface[map->piece.surface.size() / 2];
+  const CellKey rock_cell = now.key_of(rock.cast<double>());
+  ASSERT_EQ(now.at(rock_cell), Cell::occupied);
+  int scans = 0;
+  for (; now.at(rock_cell) == Cell::occupied && scans < 50; ++scans)
+    now.insert(std::vector<Ray>{{rock + Vec3f(0.5f, 0, 0), rock - Vec3f(0.5f, 0, 0), false}});
+  EXPECT_GE(scans, 2) << "one grazing ray clears no rock";
+  EXPECT_LE(scans, 6);
+}
+
+TEST(EarlierMap, FillsOnlyUnknownCells) {
+  VoxelMap map{MapOptions{}};
+  map.assign({0, 0, 0}, 1, 2.0f);
+  map.assign({1, 0, 0}, 1, -1.0f);
+  const std::vector<CellValue> cells = {
+      {{2, 0, 0}, -0.4f}, {{0, 0, 0}, -0.4f}, {{1, 0, 0}, 1.0f}, {{-3, 0, 0}, 1.0f}, {{40000, 0, 0}, 1.0f}};
+  const auto changes = map.fill_unknown(cells);
+  ASSERT_EQ(changes.size(), 2u);
+  EXPECT_EQ(changes[0].key, (CellKey{-3, 0, 0}));
+  EXPECT_EQ(changes[0].after, Cell::occupied);
+  EXPECT_EQ(changes[1].key, (CellKey{2, 0, 0}));
+  EXPECT_EQ(changes[1].before, Cell::unknown);
+  EXPECT_EQ(map.at(CellKey{0, 0, 0}), Cell::occupied);
+  EXPECT_EQ(map.at(CellKey{1, 0, 0}), Cell::free);
+  EXPECT_EQ(map.free_cells(), 2u);
+  EXPECT_EQ(map.occupied_cells(), 2u);
+}
+
+TEST(EarlierMap, SurroundingsAreTheCellsOfTheBox) {
+  const VoxelMap map = Tunnel{}.map(0, 30);
+  const Vec3 place = Tunnel{}.centre(15);
+  const auto near = surroundings(map, place, 5);
+  std::size_t expected = 0;
+  map.for_each_known([&](const CellKey& k, Cell cell, float) {
+    const CellKey low = map.key_of(place - Vec3::Constant(5)), high = map.key_of(place + Vec3::Constant(5));
+    const bool inside =
+        k.x >= low.x && k.y >= low.y && k.z >= low.z && k.x <= high.x && k.y <= high.y && k.z <= high.z;
+    expected += inside;
+    EXPECT_EQ(near->at(k), inside ? cell : Cell::unknown);
+  });
+  EXPECT_EQ(near->free_cells() + near->occupied_cells(), expected);
+  EXPECT_GT(expected, 1000u);
+}
+
+}  // namespace
+}  // namespace karst::core
