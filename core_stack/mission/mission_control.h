@@ -4,9 +4,9 @@
 //   standby -> takeoff -> (look) -> explore -> home -> land -> done       (state/phase.cpp)
 //   and manual, while the pilot or the autopilot steers
 //
-// Each part owns its state: SensorPipeline (localization, mapping), EarlierMapSearch, Exploration and GoalTracker,
-// PathExecution, Steering, ReturnHome and RelayLanding, TeamSharing and RightOfWay, ObjectSearch. This class
-// wires them.
+// Each part owns its state: SensorPipeline (localization, mapping), EarlierMapSearch, Exploration and
+// GoalTracker, PathExecution, Steering, ReturnHome and RelayLanding, TeamSharing and RightOfWay,
+// ObjectSearch. This class wires them.
 #pragma once
 #include <functional>
 #include <optional>

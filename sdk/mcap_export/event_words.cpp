@@ -113,8 +113,9 @@ struct Words {
   }
   Result operator()(const event::EarlierMap& e) const {
     const bool found = e.state == event::EarlierMapState::found;
-    return line<event::EarlierMap>(found ? Severity::info : Severity::warn,
-                                   sentence(std::string("place in the earlier map ") + name_of(e.state), {e.reason}));
+    return line<event::EarlierMap>(
+        found ? Severity::info : Severity::warn,
+        sentence(std::string("place in the earlier map ") + name_of(e.state), {e.reason}));
   }
   Result operator()(const event::Landing& e) const {
     return line<event::Landing>(

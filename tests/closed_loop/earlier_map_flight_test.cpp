@@ -26,8 +26,8 @@ std::vector<json> events_of(const fs::path& run, const std::string& kind) {
 }
 
 Output fly(const std::string& cave, const fs::path& run, const std::string& more) {
-  return run_karst("fly --cave " + cave + " --policy nearest_frontier --quiet --no-report --out " + run.string() +
-                   " " + more);
+  return run_karst("fly --cave " + cave + " --policy nearest_frontier --quiet --no-report --out " +
+                   run.string() + " " + more);
 }
 
 /// A flight of a few goals, once for all tests of this program.
@@ -60,8 +60,8 @@ std::string start_beside(const fs::path& run, double away_m) {
 TEST(EarlierMapFlight, ExploresWhatTheEarlierFlightLeft) {
   const std::string cave = generated_cave("small", 3);
   const fs::path first = first_flight(cave), folder = fresh_folder("earlier_map_second");
-  const std::string second = " --start \"" + start_beside(first, 3) + "\" --seed 5 --time 60s --set map.start=" +
-                             first.string();
+  const std::string second =
+      " --start \"" + start_beside(first, 3) + "\" --seed 5 --time 60s --set map.start=" + first.string();
   const Output out = fly(cave, folder / "with", second);
   EXPECT_EQ(out.code, 0) << out.text;
   const auto found = events_of(folder / "with", "earlier_map");
@@ -107,8 +107,9 @@ TEST(EarlierMapFlight, TheMapOfAnotherCaveIsRefusedAndTheFlightGoesOn) {
   EXPECT_TRUE(m["added_volume_m3"].is_null());
   EXPECT_GT(m["explored_volume_m3"].get<double>(), 100);
 
-  const Output required = fly(cave, folder / "required",
-                              "--seed 5 --time 45s --set map.required=true --set map.start=" + first.string());
+  const Output required =
+      fly(cave, folder / "required",
+          "--seed 5 --time 45s --set map.required=true --set map.start=" + first.string());
   EXPECT_EQ(required.code, 2) << required.text;
   EXPECT_TRUE(required.says("could not find its place in the earlier map")) << required.text;
   const json landed = metrics_of(folder / "required");
@@ -126,7 +127,9 @@ TEST(EarlierMapFlight, BadMapsAreErrorsBeforeTheFlight) {
     EXPECT_TRUE(out.says(words)) << words << "\n" << out.text;
     EXPECT_FALSE(fs::exists(folder / "run" / "events.jsonl"));
   };
-  const auto start = [&](const std::string& file) { return "--set map.start=" + (folder / file).string() + " "; };
+  const auto start = [&](const std::string& file) {
+    return "--set map.start=" + (folder / file).string() + " ";
+  };
   refused(start("nowhere"), "map.start: " + (folder / "nowhere").string() + " is not there");
   fs::create_directories(folder / "empty");
   refused(start("empty"), "holds no map.ot or map.bt");

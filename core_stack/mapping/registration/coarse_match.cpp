@@ -9,7 +9,6 @@
 namespace karst::core {
 namespace {
 
-
 constexpr double kThin_m = 0.4;        // spacing of the points for descriptors
 constexpr double kRough_m = 0.4;       // cells of the quick score: rock counts as thickened to 1.2 m
 constexpr std::size_t kScored = 1500;  // number of source points for the quick score

@@ -8,7 +8,6 @@
 namespace karst::core {
 namespace {
 
-
 // Rock in known free space has a larger weight than rock that fits: the walls of any two passages can fit,
 // while two maps of one place hardly ever contradict each other.
 constexpr double kContradiction = 3, kRoughContradiction = 2;

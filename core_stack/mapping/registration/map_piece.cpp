@@ -9,7 +9,6 @@
 namespace karst::core {
 namespace {
 
-
 constexpr double kNormalRadiusCells = 4;
 
 /// Whether more of the cells two and three steps away are free in this direction than in the opposite one.

@@ -9,7 +9,6 @@
 namespace karst::core {
 namespace {
 
-
 struct Candidate {
   Pose T_target_source;
   Overlay overlay;

@@ -323,13 +323,12 @@ struct EarlierMap {
   std::optional<double> overlap = {}, agreement = {}, residual_m = {}, hold = {}, rival = {};
   std::optional<double> free_m3 = {};  // of the earlier map, if it was found
   static constexpr auto fields() {
-    return std::make_tuple(
-        Field{"state", &EarlierMap::state}, Field{"reason", &EarlierMap::reason},
-        Field{"attempt", &EarlierMap::attempt}, Field{"position", &EarlierMap::position},
-        Field{"heading", &EarlierMap::heading_rad}, Field{"overlap", &EarlierMap::overlap},
-        Field{"agreement", &EarlierMap::agreement}, Field{"residual", &EarlierMap::residual_m},
-        Field{"hold", &EarlierMap::hold}, Field{"rival", &EarlierMap::rival},
-        Field{"free_m3", &EarlierMap::free_m3});
+    return std::make_tuple(Field{"state", &EarlierMap::state}, Field{"reason", &EarlierMap::reason},
+                           Field{"attempt", &EarlierMap::attempt}, Field{"position", &EarlierMap::position},
+                           Field{"heading", &EarlierMap::heading_rad}, Field{"overlap", &EarlierMap::overlap},
+                           Field{"agreement", &EarlierMap::agreement},
+                           Field{"residual", &EarlierMap::residual_m}, Field{"hold", &EarlierMap::hold},
+                           Field{"rival", &EarlierMap::rival}, Field{"free_m3", &EarlierMap::free_m3});
   }
 };
 
@@ -344,9 +343,9 @@ struct Outcome {
   }
 };
 
-using Event =
-    std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log, Homing,
-                 Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team, EarlierMap, Outcome>;
+using Event = std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log,
+                           Homing, Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team,
+                           EarlierMap, Outcome>;
 
 /// The line without its end: {"t": ..., "kind": ..., and the fields by name}.
 std::string line_of(TimeNs t, const Event& event);

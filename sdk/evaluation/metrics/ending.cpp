@@ -48,8 +48,7 @@ constexpr std::array kReasons = {
     Reason{"no way home, and waiting does not help", "there was no way home, and waiting did not help"},
     Reason{"supervision does not come any more", "the supervision did not come any more"},
     Reason{"control does not come any more", "the control did not come any more"},
-    Reason{"it cannot find its place in the earlier map: ",
-           "it could not find its place in the earlier map"},
+    Reason{"it cannot find its place in the earlier map: ", "it could not find its place in the earlier map"},
     Reason{"it does not lift off: ", "it did not lift off"},
 };
 constexpr std::string_view kOutOfContact = "out of contact, but there is no time for another place";

@@ -91,7 +91,8 @@ constexpr std::array kDefinitions = {
                      "time from take-off to 50 m³ that the survey lacks, if they were reached"},
     MetricDefinition{"earlier_map_found", "", more, nothing,
                      "1 if the vehicle found its place in the mission's earlier map, else 0"},
-    MetricDefinition{"earlier_volume_m3", "m^3", neither, nothing, "free volume of the earlier map, if found"},
+    MetricDefinition{"earlier_volume_m3", "m^3", neither, unknown,
+                     "free volume of the earlier map, if found"},
     MetricDefinition{"added_volume_m3", "m^3", more, nothing,
                      "explored volume that the earlier map lacks, if found"},
 };

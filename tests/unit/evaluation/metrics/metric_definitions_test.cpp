@@ -26,7 +26,8 @@ std::vector<std::string> names_in_table() {
 TEST(MetricDefinitions, AreTheFiguresOfMetricsJsonInItsOrder) {
   test::TemporaryDirectory dir;
   dir.write("unsurveyed.csv", "t_s,unsurveyed_m3\n1,0\n");  // of a mission with a survey: it has all of them
-  dir.write("events.jsonl", R"({"t":4,"kind":"earlier_map","state":"found","attempt":1,"free_m3":9})" "\n");
+  dir.write("events.jsonl", R"({"t":4,"kind":"earlier_map","state":"found","attempt":1,"free_m3":9})"
+                            "\n");
   std::vector<std::string> names;
   const nlohmann::ordered_json metrics = evaluate_run(dir.path(), {});
   for (const auto& [key, value] : metrics.items())
