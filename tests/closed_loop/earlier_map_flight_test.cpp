@@ -61,15 +61,15 @@ TEST(EarlierMapFlight, ExploresWhatTheEarlierFlightLeft) {
   const std::string cave = generated_cave("small", 3);
   const fs::path first = first_flight(cave), folder = fresh_folder("earlier_map_second");
   const std::string second =
-      " --start \"" + start_beside(first, 3) + "\" --seed 5 --time 60s --set map.start=" + first.string();
+      " --start \"" + start_beside(first, 3) + "\" --seed 5 --time 85s --set map.start=" + first.string();
   const Output out = fly(cave, folder / "with", second);
   EXPECT_EQ(out.code, 0) << out.text;
   const auto found = events_of(folder / "with", "earlier_map");
-  ASSERT_EQ(found.size(), 1u) << out.text;
-  EXPECT_EQ(found[0]["state"], "found") << found[0].dump();
-  const json& at = found[0]["position"];
+  ASSERT_FALSE(found.empty()) << out.text;
+  ASSERT_EQ(found.back()["state"], "found") << found.back().dump();
+  const json& at = found.back()["position"];
   EXPECT_LT(std::hypot(at[0].get<double>(), at[1].get<double>(), at[2].get<double>()), kPlace_m) << at;
-  EXPECT_LT(std::abs(found[0]["heading"].get<double>()), kTurn_rad);
+  EXPECT_LT(std::abs(found.back()["heading"].get<double>()), kTurn_rad);
 
   const json m = metrics_of(folder / "with"), before = metrics_of(first);
   EXPECT_EQ(m["outcome"], "landed");

@@ -39,7 +39,7 @@ MapRegistrationOptions localization_limits() {
   o.quick = {{2.0, 8, 800}, {1.0, 8, 800}};
   o.thorough = {{1.0, 15, 2000}, {0.4, 20, 4000}};
   o.finalists = 6;
-  o.limits.min_overlap = 0.5;
+  o.limits.min_overlap = 0.7;
   return o;
 }
 

@@ -17,7 +17,7 @@ MapPiece piece(const Tunnel& tunnel, double begin, double end) {
 }
 
 TEST(UprightIcp, ComesBackFromAMetreAndTenDegrees) {
-  const MapPiece target = piece({.phase = 0.4}, 0, 32), source = piece({.phase = 0.4}, 10, 24);
+  const MapPiece target = piece({.phase = 0.4}, 4, 30), source = piece({.phase = 0.4}, 10, 24);
   const Vec3 place(17, 0, 0);
   for (const double turn : {-0.17, 0.1}) {
     const Quat q = from_heading(turn);
