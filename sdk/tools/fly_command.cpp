@@ -270,8 +270,6 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy, const Live
   const flight::Mission mission = mission_of(args, choose_policy);
   make_cave_cache(args.cave_cache);
   flight::FlightRequest request = request_of(args, mission);
-  if (args.live.address.empty() && !args.live.token.empty())
-    throw core::InputError("karst fly", "--live-token", "is for --live");
   std::shared_ptr<core::RecordListener> live;  // outlives the flight
   if (!args.live.address.empty() && args.check.empty()) live = start_live(mission, request, args.live);
   request.listener = live.get();

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -92,6 +93,55 @@ TEST(Recorder, FlushTellsOfAFullDisk) {
   Recorder recorder(dir);
   recorder.telemetry({});
   EXPECT_FALSE(recorder.flush());
+}
+
+/// Keeps what it is told, and whether the record is complete.
+struct Listener : RecordListener {
+  void on_record(RecordPart part, std::string_view bytes) override { told[part] += bytes; }
+  void on_close() override { ++closed; }
+  std::map<RecordPart, std::string> told;
+  int closed = 0;
+};
+
+TEST(Recorder, AListenerGetsTheVeryBytesOfTheFilesWithoutTheColumns) {
+  for (const Durability durability : {Durability::survives_a_crash, Durability::survives_a_power_cut}) {
+    const fs::path dir = fresh("recorder_listener");
+    Listener listener;
+    Recorder recorder(dir, durability);
+    recorder.set_listener(&listener);
+    for (int i = 1; i < 5; ++i) {
+      const TimeNs t = i * kSecond;
+      recorder.write(t, event::Phase{Phase::takeoff, "clear"});
+      recorder.write(t, event::Log::kKind, event::fields_text(event::Log{"text"}));
+      recorder.pose({.stamp = t, .position = Vec3(i, 2, 3)});
+      Telemetry row;
+      row.stamp = t;
+      recorder.telemetry(row);
+      Located located;
+      located.used_at = t;
+      recorder.located(located);
+      recorder.map_changes(t, std::vector<CellChange>{{{i, 2, 3}, Cell::unknown, Cell::occupied},
+                                                      {{4, i, 6}, Cell::unknown, Cell::free}});
+    }
+    EXPECT_EQ(listener.closed, 0);
+    ASSERT_TRUE(recorder.close());
+    EXPECT_EQ(listener.closed, 1);
+    const auto bytes_of_file = [&](const char* name) {
+      std::ifstream in(dir / name, std::ios::binary);
+      return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    const auto with = [](std::string_view columns, const std::string& rows) {
+      return std::string(columns) + "\n" + rows;
+    };
+    EXPECT_EQ(bytes_of_file("events.jsonl"), listener.told[RecordPart::events]);
+    EXPECT_EQ(bytes_of_file("trajectory.tum"), listener.told[RecordPart::trajectory]);
+    EXPECT_EQ(bytes_of_file("telemetry.csv"),
+              with(Recorder::kTelemetryColumns, listener.told[RecordPart::telemetry]));
+    EXPECT_EQ(bytes_of_file("localization.csv"),
+              with(Recorder::kLocalizationColumns, listener.told[RecordPart::localization]));
+    EXPECT_EQ(bytes_of_file("map_growth.bin"), listener.told[RecordPart::map_growth]);
+    EXPECT_FALSE(listener.told[RecordPart::map_growth].empty());
+  }
 }
 
 }  // namespace
