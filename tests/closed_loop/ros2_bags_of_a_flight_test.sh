@@ -8,8 +8,8 @@ karst=$1; work=$2; here=$(dirname "$0")/../unit/replay/bag
 node_packages "$3"
 rm -rf "$work"; mkdir -p "$work/bags"
 "$karst" cave generate --preset small --seed 7 --out "$work/cave" --quiet || exit 1
-"$karst" fly --cave "$work/cave.info" --seed 7 --time 40s --set record.scans=true --set simulator.lidar.columns=256 --quiet --no-report \
-  --out "$work/flight" >/dev/null || exit 1
+"$karst" fly --cave "$work/cave.info" --seed 7 --time 40s --set record.scans=true \
+  --set simulator.lidar.columns=256 --quiet --no-report --out "$work/flight" >/dev/null || exit 1
 replay() { "$karst" replay "$1" --out "$2" --quiet --no-report >"$2.log" 2>&1; }
 replay "$work/flight/scans" "$work/expected" || { cat "$work/expected.log"; exit 1; }
 [ "$(wc -l < "$work/expected/trajectory.tum")" -ge 150 ] || { echo "the folder gives no trajectory"; exit 1; }
