@@ -19,7 +19,7 @@ constexpr std::size_t kMaxCorners = 200;  // each costs time with each question
 
 std::string shortened(const std::string& text) {
   constexpr std::size_t kMost = 60;
-  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+  return text.size() <= kMost ? text : text.substr(0, kMost).append("...");
 }
 
 /// The words of one body, read from first to last.
