@@ -1,8 +1,9 @@
-// A definition, a byte of zero, and a message that is decoded by it.
+// A definition, a byte of zero, and a message that is decoded by it, also as a scan: whatever types the
+// definition gives to a scan's members.
 #include <algorithm>
 #include <cstdint>
 
-#include "plugins/replay/bag/message.h"
+#include "plugins/replay/bag/sensor_messages.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace karst::replay;
@@ -14,6 +15,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const Message message = Message::of(type, stored, dialect);
       for (const MessageField& f : type.fields)
         if (f.kind == MessageField::Kind::structure) message.structures(f.path);
+      for (const char* scan : {"sensor_msgs/PointCloud2", "livox_ros_driver2/CustomMsg"}) try {
+          cloud_of(scan, message, {});
+        } catch (const MalformedError&) {
+        }
     } catch (const MalformedError&) {
     }
   return 0;

@@ -86,7 +86,11 @@ Message::Message(const MessageType& type, WireReader& reader)
           const std::size_t last = layout->offsets.back() + size_of(f.structure->fields.back().number);
           reader.take_numbers(ValueType::uint8, (v.count - 1) * layout->stride + last - first.size());
         } else {
-          for (std::size_t i = 0; i < v.count; ++i) Message(*f.structure, reader);
+          for (std::size_t i = 0; i < v.count; ++i) {
+            const std::size_t before = reader.at();
+            Message(*f.structure, reader);
+            if (reader.at() == before) break;  // it has no bytes, and so have the others
+          }
         }
         v.bytes = all_.subspan(v.begin, reader.at() - v.begin);
         break;

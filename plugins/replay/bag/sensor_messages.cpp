@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
 
 #include "core_stack/common/error.h"
 
@@ -17,6 +17,14 @@ std::optional<ValueType> type_of_point_field(std::int64_t datatype) {
   return kTypes[static_cast<std::size_t>(datatype - 1)];
 }
 
+/// A count or an offset. The bag's own definition may give the member any type; the real one has 32 bits.
+std::uint64_t count_of(const Message& m, const std::string& path) {
+  const std::int64_t count = m.whole(path);
+  if (count < 0 || count > std::numeric_limits<std::uint32_t>::max())
+    throw MalformedError("its " + path + " of " + std::to_string(count) + " is no count of 32 bits", 0);
+  return static_cast<std::uint64_t>(count);
+}
+
 struct NamedFields {
   std::vector<std::string> names;
   std::vector<Field> fields;
@@ -24,19 +32,16 @@ struct NamedFields {
 
 /// Gives each field its role; throws MalformedError without x, y and z.
 void assign_roles(NamedFields& f, const FieldNames& names) {
-  std::set<Role> seen;
-  for (std::size_t i = 0; i < f.fields.size(); ++i) {
-    f.fields[i].role = role_of(f.names[i], names);
-    if (f.fields[i].role != Role::none && !seen.insert(f.fields[i].role).second)
-      f.fields[i].role = Role::none;
-  }
-  for (const auto& [role, name] : {std::pair{Role::x, "x"}, {Role::y, "y"}, {Role::z, "z"}})
-    if (!seen.contains(role)) throw MalformedError(std::string("the points have no field ") + name, 0);
+  std::vector<Role> roles;
+  for (const std::string& name : f.names) roles.push_back(role_of(name, names));
+  if (const std::string missing = missing_coordinate(roles); !missing.empty())
+    throw MalformedError("the points have no field " + missing, 0);
+  for (std::size_t i = 0; i < roles.size(); ++i) f.fields[i].role = roles[i];
 }
 
 NamedFields fields_of_cloud(const Message& m, const FieldNames& names) {
   NamedFields result;
-  const std::int64_t step = m.whole("point_step");
+  const std::uint64_t step = count_of(m, "point_step");
   for (const Message& field : m.structures("fields")) {
     const std::string name(field.text("name"));
     const auto type = type_of_point_field(field.whole("datatype"));
@@ -44,13 +49,12 @@ NamedFields fields_of_cloud(const Message& m, const FieldNames& names) {
     if (!type)
       throw MalformedError(
           "the field " + name + " has the unknown type " + std::to_string(field.whole("datatype")), 0);
-    const std::int64_t offset = field.whole("offset");
-    if (offset + static_cast<std::int64_t>(size_of(*type)) > step)
+    const std::uint64_t offset = count_of(field, "offset");
+    if (offset + size_of(*type) > step)
       throw MalformedError(
           "the field " + name + " lies beyond the " + std::to_string(step) + " bytes of a point", 0);
     result.names.push_back(name);
-    result.fields.push_back(
-        {Role::none, *type, static_cast<std::size_t>(offset), static_cast<std::size_t>(step)});
+    result.fields.push_back({Role::none, *type, offset, step});
   }
   assign_roles(result, names);
   return result;
@@ -102,7 +106,8 @@ bool is_cloud_type(std::string_view type) {
 }
 
 core::TimeNs stamp_of(const Message& m) {
-  return m.whole("header.stamp.sec") * core::kSecond + m.whole("header.stamp.nanosec");
+  return static_cast<core::TimeNs>(count_of(m, "header.stamp.sec")) * core::kSecond +
+         static_cast<core::TimeNs>(count_of(m, "header.stamp.nanosec"));
 }
 std::string frame_of(const Message& m) {
   std::string frame(m.text("header.frame_id"));
@@ -119,11 +124,10 @@ CloudMessage cloud_of(std::string_view type, const Message& m, const FieldNames&
     decode(records.bytes, records.count, f.fields, m.order(), builder);
   } else {
     const NamedFields f = fields_of_cloud(m, names);
-    const auto height = static_cast<std::uint64_t>(m.whole("height")),
-               width = static_cast<std::uint64_t>(m.whole("width")),
-               step = static_cast<std::uint64_t>(m.whole("point_step"));
+    const std::uint64_t height = count_of(m, "height"), width = count_of(m, "width"),
+                        step = count_of(m, "point_step");
     // Drivers of clouds of one row do not always fill in row_step.
-    const std::uint64_t row = height > 1 ? static_cast<std::uint64_t>(m.whole("row_step")) : width * step;
+    const std::uint64_t row = height > 1 ? count_of(m, "row_step") : width * step;
     const Bytes data = m.numbers("data", ValueType::uint8);
     const auto order = m.whole("is_bigendian") != 0 ? std::endian::big : std::endian::little;
     // Each of the four has 32 bits: products do not overflow.

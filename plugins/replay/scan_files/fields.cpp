@@ -101,12 +101,18 @@ Role role_of(const std::string& name, const FieldNames& names) {
   return Role::none;
 }
 
-void check_roles(std::vector<Role>& roles, const std::string& file, const std::string& place) {
+std::string missing_coordinate(std::vector<Role>& roles) {
   std::set<Role> seen;
   for (Role& r : roles)
     if (r != Role::none && !seen.insert(r).second) r = Role::none;
   for (const auto& [role, name] : {std::pair{Role::x, "x"}, {Role::y, "y"}, {Role::z, "z"}})
-    if (!seen.contains(role)) throw core::InputError(file, place, std::string("has no field ") + name);
+    if (!seen.contains(role)) return name;
+  return "";
+}
+
+void check_roles(std::vector<Role>& roles, const std::string& file, const std::string& place) {
+  if (const std::string missing = missing_coordinate(roles); !missing.empty())
+    throw core::InputError(file, place, "has no field " + missing);
 }
 
 void ScanBuilder::begin(std::span<const Field> fields) {

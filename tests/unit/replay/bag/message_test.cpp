@@ -166,6 +166,15 @@ TEST(Message, ALengthThatLiesIsAnErrorAndNoMemory) {
                MalformedError);
 }
 
+/// 1000^3 elements without a byte, of which reading each would take minutes.
+TEST(Message, NestedArraysOfEmptyStructuresDoNotMultiply) {
+  const MessageType type = parse_message_type(
+      "a/T", "G[1000] g\n====\nMSG: a/G\nF[1000] f\n====\nMSG: a/F\nE[1000] e\n====\nMSG: a/E\n",
+      Dialect::ros1);
+  const Message m = Message::of(type, std::string(2000, '\0'), Dialect::ros1);
+  EXPECT_EQ(m.structures("g").size(), 1000u);
+}
+
 TEST(Message, EveryKnownTypeIsWellDefinedInBothDialects) {
   for (const char* name :
        {"sensor_msgs/PointCloud2", "sensor_msgs/Imu", "sensor_msgs/MagneticField",
