@@ -1,5 +1,6 @@
 // Bags: recorded messages of ROS 1 (.bag) and ROS 2 (.mcap, .db3), in the order of time. docs/replay.md
 #pragma once
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,8 +40,9 @@ class FaultLog {
   void add(std::string place, std::string reason) {
     if (++count_ <= kKept) faults_.push_back({std::move(place), std::move(reason)});
   }
-  void add(const FaultLog& other) {
-    for (const Fault& f : other.faults_) add(f.place, f.reason);
+  /// Each place begins with `prefix`.
+  void add(const FaultLog& other, const std::string& prefix = "") {
+    for (const Fault& f : other.faults_) add(prefix + f.place, f.reason);
     count_ += other.count_ - other.faults_.size();
   }
   const std::vector<Fault>& first() const { return faults_; }
@@ -52,12 +54,16 @@ class FaultLog {
   std::size_t count_ = 0;
 };
 
+constexpr core::TimeNs unknown_begin() { return std::numeric_limits<core::TimeNs>::min(); }
+
 class Bag {
  public:
   virtual ~Bag() = default;
   virtual const std::vector<Connection>& connections() const = 0;
   /// Reads only the messages of these connections, one flag each. Before the first `next()`; default: all.
   virtual void select(std::vector<bool> wanted) = 0;
+  /// No message was recorded before; `unknown_begin()` if that is not known without reading.
+  virtual core::TimeNs begin() const = 0;
   /// The next message in the order of time; nullopt at the end. Leaves out what is damaged, and logs it.
   virtual std::optional<BagMessage> next() = 0;
   /// What could not be read until now.
@@ -70,7 +76,7 @@ bool is_bag(const std::string& path);
 /// True for a folder with bags in it, as ROS 2 records them.
 bool is_folder_of_bags(const std::string& path);
 
-/// Opens by the file's first bytes; of a folder, all of its bags as one. A bag that is cut or has no index is
+/// Opens by the file's first bytes; of a folder, all of its bags as one, by the times of their messages. A bag that is cut or has no index is
 /// read through once to find its messages. Throws InputError if nothing of it can be read.
 std::unique_ptr<Bag> open_bag(const std::string& path);
 

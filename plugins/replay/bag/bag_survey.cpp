@@ -104,8 +104,11 @@ class Surveyor {
 
   void take_transforms(const BagMessage& m) {
     try {
-      const auto found = transforms_of(decoder_.decode(m.connection, m.bytes));
-      survey.transforms.insert(survey.transforms.end(), found.begin(), found.end());
+      for (FrameTransform& t : transforms_of(decoder_.decode(m.connection, m.bytes))) {
+        // A frame has one parent: what is said later replaces what was said before.
+        std::erase_if(survey.transforms, [&](const FrameTransform& known) { return known.child == t.child; });
+        survey.transforms.push_back(std::move(t));
+      }
     } catch (const MalformedError& e) {
       survey.faults.add("topic " + connections_[m.connection].topic, e.what());
     }

@@ -130,6 +130,12 @@ void ChunkedBag::finish_opening() {
                          faults_.first().front().reason + "; nothing before that can be used");
 }
 
+core::TimeNs ChunkedBag::begin() const {
+  core::TimeNs earliest = std::numeric_limits<core::TimeNs>::max();
+  for (const ChunkPlace& c : chunks_) earliest = std::min(earliest, c.start.value_or(unknown_begin()));
+  return earliest;
+}
+
 std::optional<BagMessage> ChunkedBag::next() {
   if (!merge_) {
     std::vector<core::TimeNs> start;

@@ -27,6 +27,7 @@ class ChunkedBag : public Bag {
 
   const std::vector<Connection>& connections() const override { return connections_; }
   void select(std::vector<bool> wanted) override { wanted_ = std::move(wanted); }
+  core::TimeNs begin() const override;
   std::optional<BagMessage> next() override;
   const FaultLog& faults() const override { return faults_; }
 

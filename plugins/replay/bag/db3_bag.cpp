@@ -36,6 +36,14 @@ class Db3Bag final : public Bag {
   void select(std::vector<bool> wanted) override { wanted_ = std::move(wanted); }
   const FaultLog& faults() const override { return faults_; }
 
+  core::TimeNs begin() const override {
+    // ROS 2 writes this index; without it, all messages would have to be read.
+    const auto first =
+        prepare("SELECT timestamp FROM messages INDEXED BY timestamp_idx ORDER BY timestamp LIMIT 1");
+    return first && sqlite3_step(first.get()) == SQLITE_ROW ? sqlite3_column_int64(first.get(), 0)
+                                                            : unknown_begin();
+  }
+
   std::optional<BagMessage> next() override {
     for (;;) {
       const int result = sqlite3_step(order_.get());

@@ -1,4 +1,5 @@
-// A folder of bags that a recorder began one after another, as ROS 2 does when it splits them.
+// A folder of bags as one: ROS 2 splits a long recording into bags that follow each other, and bags recorded
+// side by side overlap.
 #include <algorithm>
 #include <filesystem>
 
@@ -10,11 +11,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class BagSequence final : public Bag {
+class BagFolder final : public Bag {
  public:
-  explicit BagSequence(const std::vector<std::string>& paths) {
+  explicit BagFolder(const std::vector<std::string>& paths) {
     for (const std::string& path : paths) {
-      Part part{fs::path(path).filename().string(), open_bag(path), {}};
+      Part part;
+      part.name = fs::path(path).filename().string();
+      part.bag = open_bag(path);
+      part.begin = part.bag->begin();
       for (const Connection& c : part.bag->connections()) part.number.push_back(number_of(c));
       parts_.push_back(std::move(part));
     }
@@ -31,25 +35,61 @@ class BagSequence final : public Bag {
     }
   }
 
+  core::TimeNs begin() const override {
+    core::TimeNs earliest = std::numeric_limits<core::TimeNs>::max();
+    for (const Part& part : parts_) earliest = std::min(earliest, part.begin);
+    return earliest;
+  }
+
   std::optional<BagMessage> next() override {
-    for (; at_ < parts_.size(); ++at_) {
-      Part& part = parts_[at_];
-      if (auto m = part.bag->next()) {
-        m->connection = part.number.at(m->connection);
-        return m;
-      }
-      for (const Fault& f : part.bag->faults().first()) faults_.add(part.name + ", " + f.place, f.reason);
-      part.bag.reset();
-    }
-    return std::nullopt;
+    if (taken_ < parts_.size()) advance(parts_[taken_]);
+    begin_what_may_come_first();
+    const Part* first = first_part();
+    if (!first) return std::nullopt;
+    taken_ = static_cast<std::size_t>(first - parts_.data());
+    return first->head;
   }
 
  private:
   struct Part {
     std::string name;
     std::unique_ptr<Bag> bag;         // none after its end
-    std::vector<std::size_t> number;  // of each of its connections, in the sequence
+    std::vector<std::size_t> number;  // of each of its connections, in the folder
+    core::TimeNs begin = 0;
+    bool begun = false;
+    std::optional<BagMessage> head;  // its next message
   };
+
+  /// The part with the earliest next message.
+  const Part* first_part() const {
+    const Part* first = nullptr;
+    for (const Part& part : parts_)
+      if (part.head && (!first || part.head->time < first->head->time)) first = &part;
+    return first;
+  }
+
+  /// Of parts that were recorded one after another, only one has messages in memory.
+  void begin_what_may_come_first() {
+    for (;;) {
+      Part* next = nullptr;
+      for (Part& part : parts_)
+        if (!part.begun && (!next || part.begin < next->begin)) next = &part;
+      const Part* first = first_part();
+      if (!next || (first && first->head->time < next->begin)) return;
+      next->begun = true;
+      advance(*next);
+    }
+  }
+
+  void advance(Part& part) {
+    part.head = part.bag->next();
+    if (part.head) {
+      part.head->connection = part.number.at(part.head->connection);
+    } else {
+      faults_.add(part.bag->faults(), part.name + ", ");
+      part.bag.reset();
+    }
+  }
 
   std::size_t number_of(const Connection& c) {
     const auto same = std::find_if(connections_.begin(), connections_.end(), [&](const Connection& other) {
@@ -63,7 +103,7 @@ class BagSequence final : public Bag {
 
   std::vector<Part> parts_;
   std::vector<Connection> connections_;
-  std::size_t at_ = 0;
+  std::size_t taken_ = std::numeric_limits<std::size_t>::max();  // part of the last message
   FaultLog faults_;
 };
 
@@ -86,7 +126,7 @@ bool is_folder_of_bags(const std::string& path) { return fs::is_directory(path) 
 std::unique_ptr<Bag> open_bag_folder(const std::string& folder) {
   const std::vector<std::string> paths = bags_in(folder);
   if (paths.empty()) throw core::InputError(folder, "", "holds no bag: no .bag, .mcap or .db3");
-  return std::make_unique<BagSequence>(paths);
+  return std::make_unique<BagFolder>(paths);
 }
 
 }  // namespace karst::replay
