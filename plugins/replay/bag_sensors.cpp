@@ -44,7 +44,8 @@ BagRecording open_bag_recording(const std::string& path, const std::string& info
   RecordingInfo given;
   if (!r.info_file.empty()) given = read_recording_info(r.info_file);
   const BagSurvey survey = survey_bag(path, SurveyExtent::beginning, given.fields);
-  RecordingGuess guess = guess_recording(survey, given);
+  RecordingGuess guess =
+      guess_recording(survey, given, r.info_file.empty() ? std::set<std::string>{} : keys_in(r.info_file));
   if (!guess.doubts.empty()) {
     std::string all;
     for (const std::string& d : guess.doubts) all += (all.empty() ? "" : " ") + d;
@@ -79,8 +80,11 @@ BagSensors::BagSensors(BagRecording recording)
   auto sweep = make_sweep(notes);
   if (!sweep)
     throw InputError(recording_.path, "topic " + recording_.info.lidar_topic, "has no scan that can be read");
-  // The end of the sweep lies at least half a sweep after its stamp, or at it.
-  begin_ = std::min(notes.stamp, sweep->stamp) - core::from_seconds(recording_.info.period_s);
+  // The end of the sweep lies at least half a sweep after its stamp, or at it. Of absolute times, the stamps
+  // may be of another clock, or none.
+  const bool of_stamps_clock = sweep->stamp - notes.stamp < kMaxStampJump;
+  begin_ = (of_stamps_clock ? std::min(notes.stamp, sweep->stamp) : sweep->stamp) -
+           core::from_seconds(recording_.info.period_s);
   first_.emplace(std::move(*sweep), notes);
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core_stack/common/euler_angles.h"
 #include "plugins/replay/scan_files/decimal_time.h"
 
 namespace karst::replay {
@@ -49,21 +50,18 @@ std::string three(const core::Vec3& v) {
   return text.data();
 }
 
-/// Roll, pitch and yaw in degrees, as recording.info has them.
 std::string degrees_of(const core::Quat& q) {
-  const Eigen::Matrix3d R = q.toRotationMatrix();
-  const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
-  const bool upright = std::abs(R(2, 0)) > 1 - 1e-12;  // only the difference of roll and yaw is known
-  const double roll = upright ? 0 : std::atan2(R(2, 1), R(2, 2));
-  const double yaw = upright ? std::atan2(-R(0, 1), R(1, 1)) : std::atan2(R(1, 0), R(0, 0));
-  return three(core::Vec3(roll, pitch, yaw) * (180 / std::numbers::pi));
+  return three(core::euler_angles_of(q) * (180 / std::numbers::pi));
 }
 
 std::string namespace_of(const std::string& topic) { return topic.substr(0, topic.find('/', 1)); }
 
 class Guesser {
  public:
-  Guesser(const BagSurvey& survey, const RecordingInfo& given) : survey_(survey) { guess.info = given; }
+  Guesser(const BagSurvey& survey, const RecordingInfo& given, const std::set<std::string>& keys)
+      : survey_(survey), keys_(keys) {
+    guess.info = given;
+  }
 
   void work() {
     const CloudFacts* lidar = choose_lidar();
@@ -142,7 +140,7 @@ class Guesser {
   void guess_times(const CloudFacts& lidar) {
     const CloudField* field = field_with(lidar, Role::time);
     if (!field) return ground("The points have no times: motion during a scan is not compensated.");
-    const bool by_hand = guess.info.time_unit != "auto";
+    const bool by_hand = given("time.unit") && guess.info.time_unit != "auto";
     const CloudSample* widest = &lidar.samples.front();
     for (const CloudSample& s : lidar.samples)
       if (s.last_time - s.first_time > widest->last_time - widest->first_time) widest = &s;
@@ -171,6 +169,7 @@ class Guesser {
   }
 
   void guess_origin(const CloudFacts& lidar, double unit_s) {
+    if (given("time.of")) return ground("They count from what the recording file says.");
     const CloudSample &first = lidar.samples.front(), &last = lidar.samples.back();
     const double stamps_s = core::seconds(last.stamp - first.stamp),
                  times_s = (last.last_time - first.last_time) * unit_s,
@@ -237,43 +236,58 @@ class Guesser {
     }
   }
 
-  /// The body's frame is base_link where transforms lead to it, else the IMU's, else the LiDAR's.
+  /// The body's frame is base_link where transforms lead to it, else the IMU's, else the LiDAR's. What the
+  /// recording file says goes before that, key by key.
   void guess_mounting(const CloudFacts& lidar, const ImuFacts* imu, bool imu_named) {
-    const bool by_hand = guess.info.lidar_position != "0 0 0" || guess.info.lidar_rotation != "0 0 0" ||
-                         guess.info.imu_rotation != "0 0 0" ||
-                         (imu && imu_named && survey_.transforms.empty());
-    if (by_hand) {
-      if (imu) guess.info.imu_topic = imu->topic;
-      return ground("The sensors are mounted as the recording file says.");
-    }
+    const bool imu_by_hand = imu && (imu_named || given("imu.rotation"));
+    const bool mounted = mount_by_transforms(lidar, imu, true) ||
+                         (imu_by_hand && mount_by_transforms(lidar, imu, false));
+    const bool by_hand = given("lidar.position") || given("lidar.rotation") || given("imu.rotation");
+    if (!mounted && !by_hand) ground("The body's frame is the LiDAR's, " + lidar.frame + ".");
+    if (by_hand) ground("Of the mounting, what the recording file says is used.");
+    if (!imu || guess.info.imu_topic == imu->topic) return;
+    if (!imu_by_hand)
+      return ground("The IMU " + imu->topic + " is not used: no transform tells how its frame, " +
+                    imu->frame + ", is turned against the LiDAR's. Name it with bag.imu, and give imu.rotation.");
+    guess.info.imu_topic = imu->topic;
+    ground("The IMU " + imu->topic + " is used as the recording file says" +
+           (given("imu.rotation") ? "." : ", as if its frame were the body's: imu.rotation is not given."));
+  }
+
+  /// True if transforms connect the LiDAR with a body, and the IMU too where it is asked for.
+  bool mount_by_transforms(const CloudFacts& lidar, const ImuFacts* imu, bool with_imu) {
     std::vector<std::string> bodies{"base_link", "body"};
-    if (imu) bodies.push_back(imu->frame);
+    const bool of_imu = imu && with_imu;
+    if (of_imu) bodies.push_back(imu->frame);
     for (const std::string& body : bodies) {
       const auto T_body_lidar = find_transform(survey_.transforms, body, lidar.frame);
-      const auto T_body_imu = imu ? find_transform(survey_.transforms, body, imu->frame) : core::Pose{};
+      const auto T_body_imu = of_imu ? find_transform(survey_.transforms, body, imu->frame) : core::Pose{};
       if (!T_body_lidar || !T_body_imu) continue;
       guess.info.lidar_position = three(T_body_lidar->position);
       guess.info.lidar_rotation = degrees_of(T_body_lidar->orientation);
-      guess.info.imu_rotation = degrees_of(T_body_imu->orientation);
-      if (imu) guess.info.imu_topic = imu->topic;
-      return ground(imu && imu->frame == lidar.frame && body == imu->frame
-                        ? "LiDAR and IMU " + imu->topic + " have the same frame, " + body + "."
-                        : "/tf_static tells how the sensors are mounted on " + body +
-                              (imu ? ", IMU " + imu->topic : "") + ".");
+      if (of_imu) guess.info.imu_rotation = degrees_of(T_body_imu->orientation);
+      if (of_imu) guess.info.imu_topic = imu->topic;
+      ground(of_imu && imu->frame == lidar.frame && body == imu->frame
+                 ? "LiDAR and IMU " + imu->topic + " have the same frame, " + body + "."
+                 : "/tf_static tells how the sensors are mounted on " + body +
+                       (of_imu ? ", IMU " + imu->topic : "") + ".");
+      return true;
     }
-    ground("The body's frame is the LiDAR's, " + lidar.frame + ".");
-    if (imu)
-      ground("The IMU " + imu->topic + " is not used: no transform tells how its frame, " + imu->frame +
-             ", is turned against the LiDAR's. Name it with bag.imu, and give imu.rotation.");
+    return false;
   }
 
+  /// The recording file says it.
+  bool given(const char* key) const { return keys_.contains(key); }
+
   const BagSurvey& survey_;
+  const std::set<std::string>& keys_;
 };
 
 }  // namespace
 
-RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given) {
-  Guesser guesser(survey, given);
+RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given,
+                               const std::set<std::string>& keys) {
+  Guesser guesser(survey, given, keys);
   guesser.work();
   return std::move(guesser.guess);
 }

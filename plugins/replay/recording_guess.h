@@ -15,8 +15,10 @@ struct RecordingGuess {
   std::vector<std::string> doubts;   // what a recording.info has to say before a replay, a sentence each
 };
 
-/// `given`: keys that are already known, such as the topic; they are not guessed.
-RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given = {});
+/// `given`: what a recording file says, and `keys`: of what. Its units, origins and topics are not guessed
+/// anew; the mounting is, and `read_recording_info` puts the file's keys above it.
+RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given = {},
+                               const std::set<std::string>& keys = {});
 
 /// The keys that are not at their defaults, as text of a recording.info, with the grounds as comments.
 std::string recording_info_text(const RecordingGuess& guess);

@@ -3,6 +3,7 @@
 #include <boost/property_tree/ptree.hpp>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/euler_angles.h"
 #include "plugins/replay/scan_files/text_numbers.h"
 
 namespace karst::replay {
@@ -23,10 +24,7 @@ Vec3 three_numbers(const std::string& file, const std::string& key, std::string_
 
 /// Roll, pitch and yaw in degrees, about the fixed axes x, y, z in this order.
 core::Quat rotation_of(const std::string& file, const std::string& key, const std::string& text) {
-  const Vec3 angle = three_numbers(file, key, text) * (std::numbers::pi / 180);
-  return core::Quat(Eigen::AngleAxisd(angle.z(), Vec3::UnitZ()) *
-                    Eigen::AngleAxisd(angle.y(), Vec3::UnitY()) * Eigen::AngleAxisd(angle.x(), Vec3::UnitX()))
-      .normalized();
+  return core::rotation_of_euler(three_numbers(file, key, text) * (std::numbers::pi / 180));
 }
 
 ValueType type_of(const std::string& file, const std::string& key, const std::string& name) {
@@ -130,6 +128,12 @@ RecordingInfo read_recording_info(const std::string& file, RecordingInfo info) {
   if (info.stamp_from == StampSource::file && info.stamp_file.empty())
     throw InputError(file, "stamp.file", "expected the file that stamp.from asks for");
   return info;
+}
+
+std::set<std::string> keys_in(const std::string& file) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : core::leaves_of(core::read_info(file))) keys.insert(key);
+  return keys;
 }
 
 RecordingLayout layout_of(const RecordingInfo& info, const std::string& file) {

@@ -1,5 +1,6 @@
 // The file recording.info in a folder of scans: settings that the scans do not contain. docs/replay.md
 #pragma once
+#include <set>
 #include <string>
 
 #include "core_stack/common/geometry.h"
@@ -95,6 +96,8 @@ struct RecordingLayout {
 /// Reads and checks the file; keys that it lacks stay as in `info`. Throws InputError naming file, key, the
 /// expected value and the nearest key.
 RecordingInfo read_recording_info(const std::string& file, RecordingInfo info = {});
+/// The keys that the file has, such as "lidar.position".
+std::set<std::string> keys_in(const std::string& file);
 RecordingLayout layout_of(const RecordingInfo& info, const std::string& file);
 
 }  // namespace karst::replay

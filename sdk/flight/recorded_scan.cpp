@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core_stack/common/euler_angles.h"
 #include "core_stack/common/format_text.h"
 #include "core_stack/common/little_endian.h"
 
@@ -40,17 +41,10 @@ void for_each_return(const LidarScan& scan, const F& f) {
     }
 }
 
-/// "roll pitch yaw" in degrees, of yaw after pitch after roll. (Adding zero makes zeros of negative ones.)
+/// "roll pitch yaw" in degrees. (Adding zero makes zeros of negative ones.)
 std::string rotation_text(const core::Quat& q) {
-  const Eigen::Matrix3d R = q.toRotationMatrix();
-  constexpr double kDegrees = 180 / std::numbers::pi;
-  const double pitch = std::asin(std::clamp(-R(2, 0), -1.0, 1.0));
-  const bool upright =
-      std::abs(R(2, 0)) < 1 - 1e-12;  // else roll and yaw turn about one axis: all of it is yaw's
-  const double roll = upright ? std::atan2(R(2, 1), R(2, 2)) : 0;
-  const double yaw = upright ? std::atan2(R(1, 0), R(0, 0)) : std::atan2(-R(0, 1), R(1, 1));
-  return core::format_text("%.9g %.9g %.9g", roll * kDegrees + 0.0, pitch * kDegrees + 0.0,
-                           yaw * kDegrees + 0.0);
+  const Vec3 degrees = core::euler_angles_of(q) * (180 / std::numbers::pi);
+  return core::format_text("%.9g %.9g %.9g", degrees.x() + 0.0, degrees.y() + 0.0, degrees.z() + 0.0);
 }
 
 }  // namespace

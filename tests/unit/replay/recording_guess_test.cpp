@@ -224,6 +224,68 @@ TEST(RecordingGuess, AnImuWhoseMountingIsUnknownIsNotUsedUnlessItIsNamed) {
   EXPECT_LT((with.layout.R_body_imu * core::Vec3(1, 0, 0) - core::Vec3(0, 1, 0)).norm(), 1e-12);
 }
 
+TEST(RecordingGuess, AKeyOfTheMountingLeavesTheOthersToTheTransforms) {
+  Folder dir;
+  BagContent bag;
+  bag.add_lidar("/points", kVelodyne, "velodyne");
+  bag.add_imu("/imu/data", "imu_link", -9.81);
+  const core::Quat down(Eigen::AngleAxisd(std::numbers::pi, core::Vec3::UnitX()));
+  bag.add_transform("base_link", "velodyne", {core::Vec3(0.1, 0, 0.3), core::Quat::Identity()});
+  bag.add_transform("base_link", "imu_link", {core::Vec3(0, 0, 0), down});
+  const std::string path = bag.write(dir);
+  dir.write("a.info", "lidar { position \"0 0 0.1\" }\n");
+  const BagRecording r = open_bag_recording(path, "");
+  EXPECT_EQ(r.info.imu_topic, "/imu/data");
+  EXPECT_LT((r.layout.T_body_lidar.position - core::Vec3(0, 0, 0.1)).norm(), 1e-12);
+  EXPECT_LT(r.layout.R_body_imu.angularDistance(down), 1e-8);
+  dir.write("a.info", "lidar { position \"0 0 0\" }\n");
+  EXPECT_EQ(open_bag_recording(path, "").info.lidar_position, "0 0 0") << "the default, but said";
+}
+
+TEST(RecordingGuess, ALaterTransformOfAFrameReplacesTheEarlierOne) {
+  Folder dir;
+  BagContent bag;
+  bag.add_lidar("/points", kVelodyne, "velodyne");
+  bag.add_transform("base_link", "velodyne", {core::Vec3(0, 0, 1), core::Quat::Identity()});
+  bag.add_transform("base_link", "velodyne", {core::Vec3(0, 0, 2), core::Quat::Identity()});
+  EXPECT_EQ(open_bag_recording(bag.write(dir), "").info.lidar_position, "0 0 2");
+}
+
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string all;
+  for (const std::string& s : sentences) all += s + "\n";
+  return all;
+}
+
+TEST(RecordingGuess, AnImuThatIsUsedIsNotCalledUnused) {
+  Folder dir;
+  BagContent bag;
+  bag.add_lidar("/points", kVelodyne, "velodyne");
+  bag.add_imu("/imu/data", "imu_link", 9.81);
+  bag.add_transform("base_link", "camera", {});
+  const std::string path = bag.write(dir);
+  dir.write("a.info", "bag { imu /imu/data }\nimu { rotation \"0 0 0\" }\n");
+  const BagRecording r = open_bag_recording(path, "");
+  EXPECT_EQ(r.info.imu_topic, "/imu/data");
+  EXPECT_EQ(joined(r.assumptions).find("is not used"), std::string::npos) << joined(r.assumptions);
+  EXPECT_NE(joined(r.assumptions).find("/imu/data is used"), std::string::npos) << joined(r.assumptions);
+}
+
+TEST(RecordingGuess, TheDoubtAboutTimeOfIsAnsweredByTheRecordingFile) {
+  Folder dir;
+  BagContent bag;
+  bag.add_lidar("/points", kHesai, "lidar");
+  for (auto& m : bag.messages) std::memset(m.bytes.data() + 4, 0, 8);  // a driver that stamps nothing
+  const std::string path = bag.write(dir);
+  EXPECT_THROW(open_bag_recording(path, ""), core::InputError);
+  dir.write("a.info", "time {\n  of absolute\n  unit s\n}\n");
+  BagSensors sensors(open_bag_recording(path, ""));
+  EXPECT_NEAR(core::seconds(sensors.begin() - kStart), 0, 0.15) << "the points' time, not the stamps'";
+  int sweeps = 0;
+  for (ReadNotes notes; sensors.next_sweep(notes);) ++sweeps;
+  EXPECT_EQ(sweeps, kClouds);
+}
+
 std::string error_of(const std::string& path) {
   try {
     open_bag_recording(path, "");
