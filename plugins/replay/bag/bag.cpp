@@ -9,7 +9,9 @@
 namespace karst::replay {
 
 bool is_bag(const std::string& path) {
-  const std::string ending = std::filesystem::path(path).extension().string();
+  std::filesystem::path name(path);
+  if (name.extension() == ".zstd") name = name.stem();  // by ROS 2, as a file
+  const std::string ending = name.extension().string();
   return ending == ".bag" || ending == ".mcap" || ending == ".db3" || ending == ".active";
 }
 
@@ -24,6 +26,10 @@ std::unique_ptr<Bag> open_bag(const std::string& path) {
                            "is a bag of another version than 2.0: convert it with rosbag fix");
   if (start.starts_with("\x89MCAP")) return open_mcap(path);
   if (start.starts_with("SQLite format 3")) return open_db3(path);
+  if (start.starts_with("\x28\xb5\x2f\xfd"))
+    throw core::InputError(path, "byte 0", "is compressed as a file: decompress it first, by unzstd");
+  if (start.front() == '\0' && std::filesystem::file_size(path) == 0)
+    throw core::InputError(path, "", "is empty");
   throw core::InputError(path, "byte 0",
                          "is no bag: it begins neither as a ROS 1 bag, nor as MCAP, nor as SQLite (db3)");
 }

@@ -70,7 +70,7 @@ class Bag {
   virtual const FaultLog& faults() const = 0;
 };
 
-/// True for .bag, .mcap and .db3.
+/// True for .bag, .mcap and .db3, also where they are compressed as files (which open_bag refuses).
 bool is_bag(const std::string& path);
 
 /// True for a folder with bags in it, as ROS 2 records them.

@@ -42,7 +42,7 @@ class BagFolder final : public Bag {
   }
 
   std::optional<BagMessage> next() override {
-    if (taken_ < parts_.size()) advance(parts_[taken_]);
+    if (taken_) advance(parts_[*std::exchange(taken_, std::nullopt)]);
     begin_what_may_come_first();
     const Part* first = first_part();
     if (!first) return std::nullopt;
@@ -103,7 +103,7 @@ class BagFolder final : public Bag {
 
   std::vector<Part> parts_;
   std::vector<Connection> connections_;
-  std::size_t taken_ = std::numeric_limits<std::size_t>::max();  // part of the last message
+  std::optional<std::size_t> taken_;  // part of the last message
   FaultLog faults_;
 };
 

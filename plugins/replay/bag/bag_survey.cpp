@@ -83,7 +83,11 @@ class Surveyor {
       if (facts.fields.empty()) facts.fields = cloud_fields(facts.type, message, names_);
       const CloudMessage cloud = cloud_of(facts.type, message, names_);
       facts.frame = cloud.frame;
-      if (cloud.declared > 0) facts.samples.push_back(sample_of(cloud));
+      const CloudSample sample = sample_of(cloud);
+      if (sample.returns > 0)
+        facts.samples.push_back(sample);
+      else if (facts.problem.empty())
+        facts.problem = "they have no returns";
     } catch (const MalformedError& e) {
       facts.problem = e.what();
     }

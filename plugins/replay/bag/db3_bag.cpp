@@ -45,11 +45,12 @@ class Db3Bag final : public Bag {
   }
 
   std::optional<BagMessage> next() override {
-    for (;;) {
+    while (!ended_) {
       const int result = sqlite3_step(order_.get());
-      if (result == SQLITE_DONE) return std::nullopt;
+      ended_ = result == SQLITE_DONE;  // another step would begin anew
+      if (ended_) break;
       if (result != SQLITE_ROW) {
-        if (!read_in_file_order(result)) return std::nullopt;
+        ended_ = !read_in_file_order(result);
         continue;
       }
       const auto row = sqlite3_column_int64(order_.get(), 0), topic = sqlite3_column_int64(order_.get(), 1);
@@ -60,6 +61,10 @@ class Db3Bag final : public Bag {
       if (connection == by_id_.end()) {
         faults_.add(place_of(row),
                     "a message of the topic " + std::to_string(topic) + ", which is not described");
+        continue;
+      }
+      if (time < 0) {
+        faults_.add(place_of(row), "a message's time is before the year 1970");
         continue;
       }
       if (!wanted_.empty() && (connection->second >= wanted_.size() || !wanted_[connection->second]))
@@ -75,11 +80,13 @@ class Db3Bag final : public Bag {
       return BagMessage{connection->second, time, Bytes(bytes, bytes ? size : 0), 0,
                         static_cast<std::size_t>(row)};
     }
+    return std::nullopt;
   }
 
  private:
   static Database open(const std::string& path) {
     core::check_input(path, core::kMaxDataFileBytes);
+    refuse_unclosed(path);
     std::string uri = "file:";
     for (const char c : path) {
       if (c == '?' || c == '#' || c == '%') {
@@ -104,6 +111,20 @@ class Db3Bag final : public Bag {
     sqlite3_exec(raw, "PRAGMA cell_size_check=1; PRAGMA cache_size=-8000; PRAGMA temp_store=1", nullptr,
                  nullptr, nullptr);
     return db;
+  }
+
+  /// What was written last may stand beside a database that was not closed. SQLite would merge both into the
+  /// file, which is the user's.
+  static void refuse_unclosed(const std::string& path) {
+    for (const char* const ending : {"-wal", "-journal"}) {
+      std::error_code error;
+      const auto size = std::filesystem::file_size(path + ending, error);
+      if (!error && size > 0)
+        throw core::InputError(path, "",
+                               "was not closed: messages of it stand in " + path + ending +
+                                   ". Copy both files, and join the copies: sqlite3 COPY.db3 'PRAGMA "
+                                   "journal_mode=DELETE; VACUUM'");
+    }
   }
 
   Statement prepare(const char* sql) const {
@@ -175,7 +196,7 @@ class Db3Bag final : public Bag {
   std::map<std::int64_t, std::size_t> by_id_;
   std::vector<bool> wanted_;
   std::vector<std::int64_t> in_order_;  // rows that were read by time
-  bool in_file_order_ = false;
+  bool in_file_order_ = false, ended_ = false;
   std::int64_t last_row_ = 0;
   FaultLog faults_;
 };

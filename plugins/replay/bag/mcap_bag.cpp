@@ -113,7 +113,10 @@ class McapBag final : public ChunkedBag {
         if (opcode == 0) throw MalformedError("a record without an opcode", 0);
         const std::uint64_t left = file_bytes() - offset - kHead;
         if (opcode == kMessage && length <= left) {
-          if (!loose) loose = ChunkPlace{offset, offset, 0, Compression::none, 0, 0, time_of(offset), ""};
+          // Publishers of several topics are not in order: the least of its times is where a run begins.
+          const core::TimeNs time = time_of(offset);
+          if (!loose) loose = ChunkPlace{offset, offset, 0, Compression::none, 0, 0, time, ""};
+          loose->start = std::min(*loose->start, time);
           loose->bytes = loose->size = offset + kHead + length - loose->offset;
           if (loose->size >= kLooseBytes) end_loose();
         } else {
@@ -148,7 +151,7 @@ class McapBag final : public ChunkedBag {
     return false;
   }
 
-  std::optional<core::TimeNs> time_of(std::uint64_t message) {
+  core::TimeNs time_of(std::uint64_t message) {
     const std::string head = read_at(message + kHead, 14);
     ByteCursor at{Bytes(head), 6};
     return static_cast<core::TimeNs>(std::min(at.take<std::uint64_t>(), kMaxMcapTime));

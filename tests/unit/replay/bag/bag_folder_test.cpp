@@ -1,4 +1,4 @@
-// Folders of bags: recorded one after another, or side by side.
+// Bags as a whole: folders of them, recorded one after another or side by side, and files that cannot be read.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -47,6 +47,69 @@ TEST(BagFolder, BagsRecordedSideBySideAreMergedByTime) {
   EXPECT_EQ(std::count(all.topics.begin(), all.topics.end(), "/b"), 400);
   EXPECT_EQ(bag->faults().count(), 0u);
   EXPECT_EQ(all.times.back(), 9000);
+}
+
+TEST(BagFolder, NothingIsReadTwiceAfterItsEnd) {
+  Folder dir;
+  test::write_db3((dir.path() / "a.db3").string(), kTwoTopics, every(10, 0, 0, 4), true);
+  for (const std::string& path : {dir.path().string(), (dir.path() / "a.db3").string()}) {
+    const auto bag = open_bag(path);
+    EXPECT_EQ(read(*bag).times.size(), 4u);
+    EXPECT_FALSE(bag->next());
+  }
+}
+
+std::string opening_error_of(const std::string& path) {
+  try {
+    open_bag(path);
+  } catch (const core::InputError& e) {
+    return e.what();
+  }
+  return "opened";
+}
+
+TEST(Bag, AnUnclosedDatabaseIsNamedAndNotReadAsEmpty) {
+  Folder dir;
+  const std::string path = (dir.path() / "a.db3").string();
+  test::write_db3(path, kTwoTopics, every(10, 0, 0, 4), true);
+  dir.write("a.db3-wal", "");
+  EXPECT_EQ(opening_error_of(path), "opened") << "an empty log holds nothing";
+  dir.write("a.db3-wal", "frames");
+  EXPECT_NE(opening_error_of(path).find("was not closed: messages of it stand in " + path + "-wal"),
+            std::string::npos)
+      << opening_error_of(path);
+}
+
+TEST(Bag, TimesOfADatabaseBefore1970AreFaults) {
+  Folder dir;
+  const std::string path = (dir.path() / "a.db3").string();
+  auto messages = every(10, 0, 0, 4);
+  messages[0].time = std::numeric_limits<core::TimeNs>::min();
+  messages[3].time = std::numeric_limits<core::TimeNs>::max();
+  test::write_db3(path, kTwoTopics, messages, true);
+  const auto bag = open_bag(path);
+  EXPECT_EQ(read(*bag).times.size(), 3u);
+  EXPECT_EQ(bag->faults().count(), 1u);
+}
+
+TEST(Bag, FilesThatAreCompressedOrEmptyAreNamedSo) {
+  Folder dir;
+  const std::string zstd = dir.write("a_0.db3.zstd", std::string("\x28\xb5\x2f\xfd", 4) + "rest");
+  EXPECT_NE(opening_error_of(zstd).find("is compressed as a file"), std::string::npos) << opening_error_of(zstd);
+  EXPECT_NE(opening_error_of(dir.path().string()).find("is compressed as a file"), std::string::npos)
+      << opening_error_of(dir.path().string());
+  EXPECT_NE(opening_error_of(dir.write("b.bag", "")).find("b.bag: is empty"), std::string::npos);
+}
+
+TEST(Bag, McapMessagesOutsideOfChunksComeInTheOrderOfTime) {
+  Folder dir;
+  std::vector<test::WrittenMessage> messages;
+  const std::string large(3u << 20, '\0');  // two of them are a run
+  for (const core::TimeNs time : {0, 100}) messages.push_back({1, time, large});
+  for (const core::TimeNs time : {900, 200}) messages.push_back({0, time, "x"});
+  messages.push_back({1, 500, large});
+  const auto bag = open_bag(dir.write("a.mcap", test::mcap_file(kTwoTopics, messages, {Compression::none, true, 0})));
+  EXPECT_EQ(read(*bag).times, (std::vector<core::TimeNs>{0, 100, 200, 500, 900}));
 }
 
 TEST(BagFolder, AllFaultsOfItsBagsAreCounted) {
