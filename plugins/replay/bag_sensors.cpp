@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
 #include "plugins/replay/scan_files/decimal_time.h"
 #include "plugins/replay/sweep_of_scan.h"
 
@@ -20,16 +21,13 @@ namespace fs = std::filesystem;
 // IMU samples usually come before the scan that they lie in. A topic that ends early must not queue the other
 // one whole.
 constexpr std::size_t kMaxScansAhead = 10, kMaxSamplesAhead = 1'000'000;
-constexpr TimeNs kMaxStampJump = 10 * core::kSecond;
-constexpr int kJumpsAccepted = 5;
-
-std::string place_of_message(const Connection& c, const BagMessage& m) {
-  return "topic " + c.topic + ", byte " + std::to_string(m.chunk_byte) + ", message at " +
-         std::to_string(m.byte) + " of it";
-}
 
 bool is_pose_type(std::string_view type) {
   return type == "nav_msgs/Odometry" || type == "geometry_msgs/PoseStamped";
+}
+InputError no_poses(const std::string& path, const std::string& topic) {
+  return {path, "topic " + topic,
+          "has no nav_msgs/Odometry or geometry_msgs/PoseStamped, which bag.truth asks for"};
 }
 
 }  // namespace
@@ -42,7 +40,12 @@ BagRecording open_bag_recording(const std::string& path, const std::string& info
   const fs::path beside = fs::path(named).replace_extension(".info");
   if (info_file.empty() && fs::exists(beside)) r.info_file = beside.string();
   RecordingInfo given;
-  if (!r.info_file.empty()) given = read_recording_info(r.info_file);
+  if (!r.info_file.empty()) try {
+      given = read_recording_info(r.info_file);
+    } catch (const InputError& e) {
+      if (!info_file.empty()) throw;
+      throw InputError(e, " (read because it stands beside the bag; --info names another)");
+    }
   const BagSurvey survey = survey_bag(path, SurveyExtent::beginning, given.fields);
   RecordingGuess guess =
       guess_recording(survey, given, r.info_file.empty() ? std::set<std::string>{} : keys_in(r.info_file));
@@ -55,18 +58,16 @@ BagRecording open_bag_recording(const std::string& path, const std::string& info
   r.info = r.info_file.empty() ? guess.info : read_recording_info(r.info_file, guess.info);
   if (r.info.lidar_topic == "auto") r.info.lidar_topic = guess.info.lidar_topic;
   if (r.info.imu_topic == "auto") r.info.imu_topic = guess.info.imu_topic;
+  if (r.info.truth_topic != "none") {
+    const auto& topics = survey.topics;
+    if (std::none_of(topics.begin(), topics.end(), [&](const TopicFacts& t) {
+          return t.topic == r.info.truth_topic && is_pose_type(t.type);
+        }))
+      throw no_poses(path, r.info.truth_topic);
+  }
   r.layout = layout_of(r.info, r.info_file.empty() ? path : r.info_file);
   r.assumptions = std::move(guess.grounds);
   return r;
-}
-
-bool BagSensors::StampCheck::plausible(TimeNs stamp, TimeNs recorded) {
-  const TimeNs offset = stamp - recorded;
-  const bool jumped = offset_ && std::abs(offset - *offset_) > kMaxStampJump;
-  if (jumped && ++jumps_ < kJumpsAccepted) return false;
-  jumps_ = 0;
-  offset_ = offset;
-  return true;
 }
 
 BagSensors::BagSensors(BagRecording recording)
@@ -82,7 +83,7 @@ BagSensors::BagSensors(BagRecording recording)
     throw InputError(recording_.path, "topic " + recording_.info.lidar_topic, "has no scan that can be read");
   // The end of the sweep lies at least half a sweep after its stamp, or at it. Of absolute times, the stamps
   // may be of another clock, or none.
-  const bool of_stamps_clock = sweep->stamp - notes.stamp < kMaxStampJump;
+  const bool of_stamps_clock = sweep->stamp - notes.stamp < StampCheck<int>::kMaxJump;
   begin_ = (of_stamps_clock ? std::min(notes.stamp, sweep->stamp) : sweep->stamp) -
            core::from_seconds(recording_.info.period_s);
   first_.emplace(std::move(*sweep), notes);
@@ -90,34 +91,58 @@ BagSensors::BagSensors(BagRecording recording)
 
 bool BagSensors::read_one() {
   const auto m = bag_->next();
-  if (!m) return false;
+  if (!m) {
+    const std::size_t before = clouds_.size() + imu_.size();
+    queue(cloud_stamps_.finish());
+    queue(imu_stamps_.finish());
+    return clouds_.size() + imu_.size() > before;
+  }
   try {
     if (bag_->connections()[m->connection].type == "sensor_msgs/Imu")
       take_imu(*m);
     else
       take_cloud(*m);
   } catch (const MalformedError& e) {
-    faults_.add(place_of_message(bag_->connections()[m->connection], *m), e.what());
+    faults_.add(text_of({m->connection, m->chunk_byte, m->byte}), e.what());
   }
   return true;
 }
 
 void BagSensors::take_cloud(const BagMessage& m) {
-  const Connection& c = bag_->connections()[m.connection];
-  CloudMessage cloud = cloud_of(c.type, decoder_.decode(m.connection, m.bytes), recording_.info.fields);
-  if (!cloud_stamps_.plausible(cloud.stamp, m.time))
-    throw MalformedError(
-        "its stamp " + decimal_seconds(cloud.stamp) + " s jumps against the time of recording", 0);
-  clouds_.push_back({std::move(cloud), place_of_message(c, m)});
+  CloudMessage cloud = cloud_of(bag_->connections()[m.connection].type,
+                                decoder_.decode(m.connection, m.bytes), recording_.info.fields);
+  const TimeNs stamp = cloud.stamp;
+  queue(cloud_stamps_.take({{std::move(cloud), {m.connection, m.chunk_byte, m.byte}}, stamp, m.time},
+                           imu_stamps_.shift()));
 }
 
 void BagSensors::take_imu(const BagMessage& m) {
-  core::ImuSample sample = imu_of(decoder_.decode(m.connection, m.bytes));
-  if (!imu_stamps_.plausible(sample.stamp, m.time))
-    throw MalformedError(
-        "its stamp " + decimal_seconds(sample.stamp) + " s jumps against the time of recording", 0);
+  const core::ImuSample sample = imu_of(decoder_.decode(m.connection, m.bytes));
+  queue(imu_stamps_.take({{sample, {m.connection, m.chunk_byte, m.byte}}, sample.stamp, m.time},
+                         cloud_stamps_.shift()));
+}
+
+void BagSensors::queue(StampCheck<QueuedCloud>::Verdict clouds) {
+  log(clouds);
+  for (auto& [cloud, stamp, recorded] : clouds.passed) {
+    cloud.shift = stamp - cloud.cloud.stamp;
+    cloud.cloud.stamp = stamp;
+    clouds_.push_back(std::move(cloud));
+  }
+}
+
+void BagSensors::queue(StampCheck<QueuedSample>::Verdict samples) {
+  log(samples);
+  for (auto& [queued, stamp, recorded] : samples.passed) {
+    queued.sample.stamp = stamp;
+    queue(queued.sample, queued.place);
+  }
+}
+
+void BagSensors::queue(core::ImuSample sample, const MessagePlace& place) {
   if (last_imu_ && sample.stamp < *last_imu_)
-    throw MalformedError("its stamp " + decimal_seconds(sample.stamp) + " s goes back in time", 0);
+    return faults_.add(text_of(place),
+                       "its stamp " + decimal_seconds(sample.stamp) + " s goes back in time");
   last_imu_ = sample.stamp;
   constexpr double kStandardGravity = 9.80665;
   if (recording_.info.imu_force_unit == ForceUnit::g) sample.specific_force_mps2 *= kStandardGravity;
@@ -126,8 +151,27 @@ void BagSensors::take_imu(const BagMessage& m) {
   imu_.push_back(sample);
   if (imu_.size() > kMaxSamplesAhead) {
     imu_.pop_front();
-    throw MalformedError("a million samples came without a scan: the oldest are left out", 0);
+    faults_.add(text_of(place), "a million samples came without a scan: the oldest are left out");
   }
+}
+
+template <class Verdict>
+void BagSensors::log(const Verdict& verdict) {
+  for (const auto& r : verdict.refused)
+    faults_.add(text_of(r.value.place),
+                "its stamp " + decimal_seconds(r.stamp) + " s jumps against the time of recording");
+  if (verdict.set_by < 0)
+    faults_.add(text_of(verdict.passed.front().value.place),
+                core::format_text("the clock was set back by %.1f s: its later stamps are shifted by that",
+                                  -core::seconds(verdict.set_by)));
+  if (verdict.set_by > 0)
+    faults_.add(text_of(verdict.passed.front().value.place),
+                core::format_text("the clock was set forward by %.1f s", core::seconds(verdict.set_by)));
+}
+
+std::string BagSensors::text_of(const MessagePlace& place) const {
+  return "topic " + bag_->connections()[place.connection].topic + ", byte " +
+         std::to_string(place.chunk_byte) + ", message at " + std::to_string(place.byte) + " of it";
 }
 
 std::optional<core::Sweep> BagSensors::make_sweep(ReadNotes& notes) {
@@ -137,17 +181,23 @@ std::optional<core::Sweep> BagSensors::make_sweep(ReadNotes& notes) {
     QueuedCloud next = std::move(clouds_.front());
     clouds_.pop_front();
     notes = {next.cloud.stamp, 0, false};
+    const std::string place = text_of(next.place);
     core::Sweep sweep;
     try {
-      sweep = sweep_of(std::move(next.cloud.scan), next.cloud.stamp, {recording_.path, next.place},
+      sweep = sweep_of(std::move(next.cloud.scan), next.cloud.stamp, {recording_.path, place},
                        recording_.info, recording_.layout, &notes);
     } catch (const InputError& e) {
       if (!last_sweep_) throw;  // the recording file is wrong rather than one scan
-      faults_.add(next.place, std::string(e.what()).substr(recording_.path.size() + next.place.size() + 4));
+      faults_.add(place, std::string(e.what()).substr(recording_.path.size() + place.size() + 4));
       continue;
     }
+    if (sweep.points.empty()) {
+      ++without_returns_;
+      continue;
+    }
+    if (recording_.info.time_of == TimeOrigin::absolute && !sweep.compensated) sweep.stamp += next.shift;
     if (last_sweep_ && sweep.stamp <= *last_sweep_) {
-      faults_.add(next.place, "its last point is not after that of the scan before it");
+      faults_.add(place, "its last point is not after that of the scan before it");
       continue;
     }
     last_sweep_ = sweep.stamp;
@@ -182,36 +232,41 @@ SensorStream::Damage BagSensors::damage() const {
   return damage;
 }
 
-std::size_t write_truth(const std::string& path, const std::string& topic, const std::string& tum_file) {
+WrittenTruth write_truth(const std::string& path, const std::string& topic, const std::string& tum_file) {
   const auto bag = open_bag(path);
   MessageDecoder decoder(bag->connections());
   std::vector<bool> wanted;
   for (const Connection& c : bag->connections()) wanted.push_back(c.topic == topic && is_pose_type(c.type));
   if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
-    throw InputError(path, "topic " + topic,
-                     "has no nav_msgs/Odometry or geometry_msgs/PoseStamped, which bag.truth asks for");
+    throw no_poses(path, topic);
   bag->select(std::move(wanted));
   std::ofstream out(tum_file, std::ios::trunc);
-  std::size_t poses = 0;
+  WrittenTruth written;
+  std::string problem;  // of the first that is damaged
   while (const auto m = bag->next()) {
     const std::string& type = bag->connections()[m->connection].type;
     try {
       const StampedPose pose = pose_of(type, decoder.decode(m->connection, m->bytes));
       const core::Vec3& p = pose.T_world_body.position;
       const core::Quat& q = pose.T_world_body.orientation;
-      if (!p.allFinite()) continue;
+      if (!p.allFinite()) throw MalformedError("its position is not finite", 0);
       std::array<char, 256> line;
       std::snprintf(line.data(), line.size(), "%s %.6f %.6f %.6f %.8f %.8f %.8f %.8f\n",
                     decimal_seconds(pose.stamp).c_str(), p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
       out << line.data();
-      ++poses;
-    } catch (const MalformedError&) {
-      continue;  // a pose less; the replay tells of damage
+      ++written.poses;
+    } catch (const MalformedError& e) {
+      if (written.damaged++ == 0) problem = e.what();
     }
   }
   out.flush();
   if (!out) throw InputError(tum_file, "", "cannot be written");
-  return poses;
+  if (written.poses == 0)
+    throw InputError(path, "topic " + topic,
+                     "none of its " + std::to_string(written.damaged) +
+                         " messages is a pose that can be read, which bag.truth asks for" +
+                         (problem.empty() ? "" : ": " + problem));
+  return written;
 }
 
 }  // namespace karst::replay

@@ -4,6 +4,7 @@
 
 #include "plugins/replay/recording_guess.h"
 #include "plugins/replay/sensor_stream.h"
+#include "plugins/replay/stamp_check.h"
 
 namespace karst::replay {
 
@@ -30,25 +31,31 @@ class BagSensors final : public SensorStream {
   bool has_imu() const override { return recording_.info.imu_topic != "none"; }
   std::optional<core::ImuSample> next_imu() override;
   Damage damage() const override;
+  std::size_t scans_without_returns() const override { return without_returns_; }
 
  private:
+  struct MessagePlace {
+    std::size_t connection = 0, chunk_byte = 0, byte = 0;
+  };
   struct QueuedCloud {
     CloudMessage cloud;
-    std::string place;
+    MessagePlace place;
+    core::TimeNs shift = 0;  // of its stamp, and of times that are absolute
   };
-  /// Refuses stamps that jump against the times of recording, until they have done so several times in a row.
-  class StampCheck {
-   public:
-    bool plausible(core::TimeNs stamp, core::TimeNs recorded);
-
-   private:
-    std::optional<core::TimeNs> offset_;
-    int jumps_ = 0;
+  struct QueuedSample {
+    core::ImuSample sample;
+    MessagePlace place;
   };
 
   bool read_one();  // false at the end of the bag
   void take_cloud(const BagMessage& m);
   void take_imu(const BagMessage& m);
+  void queue(StampCheck<QueuedCloud>::Verdict clouds);
+  void queue(StampCheck<QueuedSample>::Verdict samples);
+  void queue(core::ImuSample sample, const MessagePlace& place);
+  template <class Verdict>
+  void log(const Verdict& verdict);
+  std::string text_of(const MessagePlace& place) const;
   std::optional<core::Sweep> make_sweep(ReadNotes& notes);
 
   BagRecording recording_;
@@ -56,14 +63,20 @@ class BagSensors final : public SensorStream {
   MessageDecoder decoder_;
   std::deque<QueuedCloud> clouds_;
   std::deque<core::ImuSample> imu_;
-  StampCheck cloud_stamps_, imu_stamps_;
+  StampCheck<QueuedCloud> cloud_stamps_;
+  StampCheck<QueuedSample> imu_stamps_;
   std::optional<core::TimeNs> last_sweep_, last_imu_;
   std::optional<std::pair<core::Sweep, ReadNotes>> first_;
   core::TimeNs begin_ = 0;
+  std::size_t without_returns_ = 0;
   FaultLog faults_;  // of messages; the bag has its own
 };
 
-/// Writes the poses of a bag's topic in the TUM format; returns their number. For the evaluation only.
-std::size_t write_truth(const std::string& bag, const std::string& topic, const std::string& tum_file);
+struct WrittenTruth {
+  std::size_t poses = 0, damaged = 0;
+};
+/// Writes the poses of a bag's topic in the TUM format. For the evaluation only. Throws InputError if there is
+/// none.
+WrittenTruth write_truth(const std::string& bag, const std::string& topic, const std::string& tum_file);
 
 }  // namespace karst::replay

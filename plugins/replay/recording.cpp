@@ -60,7 +60,8 @@ std::vector<RecordedFile> find_files(const Recording& r) {
   if (error) throw InputError(r.folder.string(), "", "cannot be read: " + error.message());
   if (found.empty())
     throw InputError(r.folder.string(), "",
-                     "holds no scan: no .pcd, .ply or .bin file fits scans \"" + r.info.scans + "\"");
+                     "holds no scan: no .pcd, .ply or .bin file fits scans \"" + r.info.scans +
+                         "\", and no bag (.bag, .mcap, .db3)");
   std::sort(found.begin(), found.end(),
             [](const auto& a, const auto& b) { return before(a.first, b.first); });
   std::vector<RecordedFile> files;

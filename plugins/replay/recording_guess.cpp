@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core_stack/common/euler_angles.h"
+#include "core_stack/common/printable.h"
 #include "plugins/replay/scan_files/decimal_time.h"
 
 namespace karst::replay {
@@ -283,6 +284,20 @@ class Guesser {
   const std::set<std::string>& keys_;
 };
 
+bool has_controls(std::string_view text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+/// Names of topics are a bag's, and may have anything.
+std::string info_text(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
 }  // namespace
 
 RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given,
@@ -292,10 +307,16 @@ RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& giv
   return std::move(guesser.guess);
 }
 
+std::string comment_text(std::string_view text) {
+  std::string line = core::printable(text);
+  std::replace_if(line.begin(), line.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  return line;
+}
+
 std::string recording_info_text(const RecordingGuess& guess) {
   std::string text;
-  for (const std::string& g : guess.grounds) text += "; " + g + "\n";
-  for (const std::string& d : guess.doubts) text += "; OPEN: " + d + "\n";
+  for (const std::string& g : guess.grounds) text += "; " + comment_text(g) + "\n";
+  for (const std::string& d : guess.doubts) text += "; OPEN: " + comment_text(d) + "\n";
   RecordingInfo info = guess.info, usual;
   core::OptionTable table, defaults;
   describe(table, info);
@@ -312,9 +333,13 @@ std::string recording_info_text(const RecordingGuess& guess) {
     const auto& [key, value] = values[i];
     if (value == unset[i].second) continue;
     const auto dot = key.find('.');
+    if (has_controls(value)) {
+      text += "; " + key + " \"" + comment_text(value) + "\": a recording file cannot have its control characters\n";
+      continue;
+    }
     enter(dot == std::string::npos ? "" : key.substr(0, dot));
-    text += (section.empty() ? "" : "  ") + key.substr(dot == std::string::npos ? 0 : dot + 1) + " \"" +
-            value + "\"\n";
+    text += (section.empty() ? "" : "  ") + key.substr(dot == std::string::npos ? 0 : dot + 1) + " " +
+            info_text(value) + "\n";
   }
   enter("");
   return text;

@@ -2,15 +2,41 @@
 
 #include <filesystem>
 
+#include "core_stack/common/error.h"
+#include "core_stack/common/input_file.h"
 #include "plugins/replay/bag_sensors.h"
 #include "plugins/replay/recording.h"
 
 namespace karst::replay {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+bool holds_scans(const std::string& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.is_regular_file() && is_scan_file(entry.path().string())) return true;
+  return false;
+}
+
+bool is_bag_recording(const std::string& path) {
+  if (!fs::exists(path)) throw core::InputError(path, "", "no such bag, and no such folder of scans");
+  if (!fs::is_directory(path)) {
+    core::check_input(path, core::kMaxDataFileBytes);
+    return true;
+  }
+  if (!is_folder_of_bags(path)) return false;
+  if (holds_scans(path)) throw core::InputError(path, "", "holds scans and bags: name the bag");
+  return true;
+}
+
+}  // namespace
+
 RecordingSource open_source(const std::string& path, const std::string& info_file) {
   RecordingSource source;
   source.path = path;
-  source.is_bag = std::filesystem::is_regular_file(path) || is_folder_of_bags(path);
+  source.is_bag = is_bag_recording(path);
   if (source.is_bag) {
     BagRecording bag = open_bag_recording(path, info_file);
     source.info_file = bag.info_file;

@@ -38,6 +38,8 @@ class SensorStream {
     std::size_t count = 0;
   };
   virtual Damage damage() const { return {}; }
+  /// Scans that were skipped, as no point of theirs is within range: of a blocked or a starting LiDAR.
+  virtual std::size_t scans_without_returns() const { return 0; }
 };
 
 }  // namespace karst::replay

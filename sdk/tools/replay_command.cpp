@@ -92,12 +92,13 @@ void write_settings(const fs::path& run_dir, const replay::RecordingSource& reco
   }
 }
 
-void print_summary(const replay::ReplaySummary& s, const nlohmann::json& metrics, const fs::path& run_dir,
-                   bool report) {
+void print_summary(const replay::ReplaySummary& s, std::size_t without_returns, const nlohmann::json& metrics,
+                   const fs::path& run_dir, bool report) {
   print_out("%zu scans, %zu of them lost", s.scans, s.lost);
   if (s.lost > 0) print_out(" (the last: %s)", s.last_problem.c_str());
   print_out("\n  points           %zu used, %zu left out (not finite, or out of range)\n", s.points,
             s.dropped_points);
+  if (without_returns > 0) print_out("  skipped          %zu scans without a return\n", without_returns);
   if (s.imu_samples > 0) print_out("  IMU              %zu samples\n", s.imu_samples);
   print_out("  path length      %.2f m\n", s.path_m);
   if (metrics["explored_volume_m3"].is_number())
@@ -159,11 +160,12 @@ int replay_scans(const ReplayArguments& args) {
   claim.keep();
 
   replay::ReplaySummary summary;
+  replay::WrittenTruth truth;
   std::string damage;
   const ReplayLine line(args.quiet || args.json, recording.sensors->scans());
   try {
     if (recording.is_bag && recording.info.truth_topic != "none")
-      replay::write_truth(recording.path, recording.info.truth_topic, (run_dir / "truth.tum").string());
+      truth = replay::write_truth(recording.path, recording.info.truth_topic, (run_dir / "truth.tum").string());
     summary = replay::replay_recording(
         *recording.sensors, options, run_dir,
         [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
@@ -184,12 +186,17 @@ int replay_scans(const ReplayArguments& args) {
   if (args.json) {
     print_json(metrics);
   } else {
-    print_summary(summary, metrics, run_dir, !args.no_report);
+    print_summary(summary, recording.sensors->scans_without_returns(), metrics, run_dir, !args.no_report);
   }
+  if (truth.damaged > 0)
+    print_error("karst: %s: topic %s: %zu of its messages are no poses that can be read; truth.tum has the other %zu\n",
+                core::printable(recording.path).c_str(), core::printable(recording.info.truth_topic).c_str(),
+                truth.damaged, truth.poses);
   if (const replay::SensorStream::Damage d = recording.sensors->damage(); d.count > 0) {
     print_damage(d);
     return 1;
   }
+  if (truth.damaged > 0) return 1;
   return interrupted || summary.lost == summary.scans ? 2 : 0;
 }
 

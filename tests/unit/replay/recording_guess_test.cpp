@@ -348,6 +348,38 @@ TEST(RecordingGuess, ItsTextIsARecordingFileThatSaysTheSame) {
   EXPECT_EQ(read.rings_by, RingSource::field);
 }
 
+TEST(RecordingGuess, NamesOfTopicsDoNotBreakItsText) {
+  for (const char* name : {"/p\"q\\", "/p\x1b[31m\"\ncompensated true"}) {
+    Folder dir;
+    BagContent bag;
+    bag.add_lidar(name, kOuster, "lidar");
+    const RecordingGuess guess = guess_recording(survey_bag(bag.write(dir), SurveyExtent::all));
+    const std::string text = recording_info_text(guess);
+    const RecordingInfo read = read_recording_info(dir.write("b.info", text));
+    EXPECT_FALSE(read.compensated) << text;
+    EXPECT_EQ(read.time_unit, "ns");
+    EXPECT_EQ(text.find('\x1b'), std::string::npos);
+    const bool writable = std::string_view(name).find('\n') == std::string_view::npos;
+    EXPECT_EQ(read.lidar_topic, writable ? name : "auto") << text;
+  }
+}
+
+TEST(BagSensors, TheErrorInAnInfoThatStandsBesideABagSaysWhyItWasRead) {
+  Folder dir;
+  BagContent bag;
+  bag.add_lidar("/points", kVelodyne, "lidar");
+  const std::string path = bag.write(dir), mission = dir.write("a.info", "mission { max_flight_time 90s }\n");
+  EXPECT_NE(error_of(path).find("(read because it stands beside the bag; --info names another)"),
+            std::string::npos)
+      << error_of(path);
+  try {
+    open_bag_recording(path, mission);
+    ADD_FAILURE();
+  } catch (const core::InputError& e) {
+    EXPECT_EQ(std::string(e.what()).find("stands beside"), std::string::npos) << "it was named";
+  }
+}
+
 TEST(BagSurvey, TellsRatesAndTheLongestGap) {
   Folder dir;
   BagContent bag;
@@ -395,12 +427,129 @@ TEST(BagSensors, TheTruthIsWrittenForTheEvaluation) {
   for (const double v : {1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0}) s.number(v);
   bag.messages.push_back({t, kStart, s.bytes()});
   const std::string out = (dir.path() / "truth.tum").string(), path = bag.write(dir);
-  EXPECT_EQ(write_truth(path, "/truth", out), 1u);
+  EXPECT_EQ(write_truth(path, "/truth", out).poses, 1u);
   std::ifstream in(out);
   std::string line;
   std::getline(in, line);
   EXPECT_TRUE(line.starts_with("1700000000.000000005 1.000000 2.000000 3.000000 0.0")) << line;
   EXPECT_THROW(write_truth(path, "/none", out), core::InputError);
+}
+
+void add_pose(BagContent& bag, std::size_t topic, int k, double qw) {
+  Serializer s(Serializer::cdr_little);
+  s.header(kStart + k, "map");
+  for (const double v : {1.0, 2.0, 3.0, 0.0, 0.0, 0.0, qw}) s.number(v);
+  bag.messages.push_back({topic, kStart + k, s.bytes()});
+}
+
+TEST(BagSensors, ATruthThatIsNotThereOrCannotBeReadIsSaid) {
+  Folder dir;
+  BagContent bag;
+  bag.add_lidar("/points", kVelodyne, "lidar");
+  const std::size_t t = bag.topic("/odom", "geometry_msgs/PoseStamped");
+  for (int k = 0; k < 3; ++k) add_pose(bag, t, k, 0);  // no rotation
+  const std::string path = bag.write(dir), out = (dir.path() / "truth.tum").string();
+  dir.write("a.info", "bag { truth /points }\n");
+  EXPECT_NE(error_of(path).find("topic /points: has no nav_msgs/Odometry"), std::string::npos)
+      << "before anything is written: " << error_of(path);
+  try {
+    write_truth(path, "/odom", out);
+    ADD_FAILURE();
+  } catch (const core::InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("none of its 3 messages is a pose"), std::string::npos) << e.what();
+  }
+  add_pose(bag, t, 3, 1);
+  const WrittenTruth written = write_truth(bag.write(dir), "/odom", out);
+  EXPECT_EQ(written.poses, 1u);
+  EXPECT_EQ(written.damaged, 3u);
+}
+
+/// Scans as of kVelodyne, recorded every 0.1 s, and stamped as `stamp_of(k)` says.
+void add_scans(BagContent& bag, int count, const std::function<TimeNs(int k)>& stamp_of,
+               const Driver& driver = kVelodyne) {
+  const std::size_t t = bag.topic("/points", "sensor_msgs/PointCloud2");
+  for (int k = 0; k < count; ++k) {
+    std::string data;
+    for (int i = 0; i < kPoints; ++i) {
+      const float angle = 0.03f * static_cast<float>(i);
+      for (const float v : {5 * std::cos(angle), 5 * std::sin(angle), 0.1f}) put(data, v);
+      driver.rest(data, i, stamp_of(k), i * 100 * kMillisecond / kPoints);
+    }
+    bag.messages.push_back({t, kStart + k * 100 * kMillisecond,
+                            test::point_cloud2(Serializer::cdr_little, stamp_of(k), "lidar", driver.fields,
+                                               driver.step, data)});
+  }
+}
+struct Sweeps {
+  std::vector<TimeNs> stamps;
+  SensorStream::Damage damage;
+};
+Sweeps sweeps_of(BagSensors& sensors) {
+  Sweeps all;
+  for (ReadNotes notes; const auto sweep = sensors.next_sweep(notes);) all.stamps.push_back(sweep->stamp);
+  all.damage = sensors.damage();
+  return all;
+}
+
+TEST(BagSensors, AClockThatIsSetBackIsOneFaultAndTimeGoesOn) {
+  for (const Driver* driver : {&kVelodyne, &kHesai}) {  // times from the stamp, and absolute ones
+    Folder dir;
+    BagContent bag;
+    const auto stamp_of = [](int k) { return kStart + k * 100 * kMillisecond - (k < 20 ? 0 : 37 * kSecond); };
+    add_scans(bag, 80, stamp_of, *driver);
+    const std::size_t t = bag.topic("/imu", "sensor_msgs/Imu");
+    for (int k = 0; k < 800; ++k) {
+      const TimeNs recorded = kStart + k * 10 * kMillisecond;
+      const TimeNs stamp = recorded - (k < 200 ? 0 : 37 * kSecond);
+      bag.messages.push_back({t, recorded + 3 * kMillisecond * (k % 2),
+                              test::imu(Serializer::cdr_little, stamp, "lidar", {0, 0, 9.81}, {0, 0, 0})});
+    }
+    BagSensors sensors(open_bag_recording(bag.write(dir), ""));
+    std::vector<TimeNs> imu;
+    Sweeps sweeps;
+    for (ReadNotes notes; const auto sweep = sensors.next_sweep(notes);) {
+      sweeps.stamps.push_back(sweep->stamp);
+      while (const auto sample = sensors.next_imu()) {
+        imu.push_back(sample->stamp);
+        if (sample->stamp > sweep->stamp) break;
+      }
+    }
+    ASSERT_EQ(sweeps.stamps.size(), 80u);
+    for (std::size_t k = 0; k < 80; ++k)
+      EXPECT_NEAR(core::seconds(sweeps.stamps[k] - kStart), 0.1 * static_cast<double>(k) + 0.0995, 0.0051) << k;
+    EXPECT_TRUE(std::is_sorted(imu.begin(), imu.end()));
+    const auto damage = sensors.damage();
+    ASSERT_EQ(damage.count, 2u) << joined(damage.first);  // one of each topic
+    for (const std::string& d : damage.first)
+      EXPECT_NE(d.find("the clock was set back by 37.0 s"), std::string::npos) << d;
+  }
+}
+
+TEST(BagSensors, AWrongFirstStampCostsOneScan) {
+  Folder dir;
+  BagContent bag;
+  add_scans(bag, 12, [](int k) { return kStart + k * 100 * kMillisecond + (k == 0 ? 30 * kSecond : 0); });
+  BagSensors sensors(open_bag_recording(bag.write(dir), ""));
+  const Sweeps all = sweeps_of(sensors);
+  EXPECT_EQ(all.stamps.size(), 11u);
+  EXPECT_EQ(all.damage.count, 1u) << joined(all.damage.first);
+}
+
+TEST(BagSensors, AScanWithoutReturnsIsNoDamage) {
+  Folder dir;
+  BagContent bag;
+  add_scans(bag, 12, [](int k) { return kStart + k * 100 * kMillisecond; });
+  for (const int k : {0, 5}) {
+    const TimeNs stamp = kStart + k * 100 * kMillisecond;
+    bag.messages[static_cast<std::size_t>(k)].bytes =
+        test::point_cloud2(Serializer::cdr_little, stamp, "lidar", kVelodyne.fields, kVelodyne.step,
+                           std::string(kVelodyne.step * 100, '\0'));
+  }
+  BagSensors sensors(open_bag_recording(bag.write(dir), ""));
+  const Sweeps all = sweeps_of(sensors);
+  EXPECT_EQ(all.stamps.size(), 10u);
+  EXPECT_EQ(all.damage.count, 0u) << joined(all.damage.first);
+  EXPECT_EQ(sensors.scans_without_returns(), 2u);
 }
 
 }  // namespace

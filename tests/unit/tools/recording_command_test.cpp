@@ -90,7 +90,7 @@ TEST(RecordingCommand, WhatIsNoBagIsAnError) {
     EXPECT_NE(p.error.find(name + ": "), std::string::npos) << p.error;
     EXPECT_NE(p.error.find(reason), std::string::npos) << p.error;
   };
-  refused("empty.bag", "", "is no bag");
+  refused("empty.bag", "", "is empty");
   refused("text.mcap", "not a bag at all", "is no bag");
   refused("old.bag", "#ROSBAG V1.2\n1234", "another version");
   refused("head.bag", "#ROSBAG V2.0\n", "");
