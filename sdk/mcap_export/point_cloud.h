@@ -38,7 +38,7 @@ inline PointCloud2 empty_cloud(Header header, std::initializer_list<PointColumn>
     cloud.fields.push_back({c.name, cloud.point_step, static_cast<std::uint8_t>(c.type), 1});
     cloud.point_step += size_of(c.type);
   }
-  cloud.is_dense = true;  // no point is NaN
+  cloud.is_dense = true;  // no position is NaN
   return cloud;
 }
 

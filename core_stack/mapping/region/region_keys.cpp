@@ -64,7 +64,8 @@ class Body {
     const std::string& word = words_[next_++];
     double v = 0;
     const char* const end = word.data() + word.size();
-    const auto [stop, error] = std::from_chars(word.data(), end, v);
+    const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // from_chars takes none
+    const auto [stop, error] = std::from_chars(word.data() + (plus ? 1 : 0), end, v);
     if (error != std::errc() || stop != end || !(std::abs(v) <= kFarthest_m))
       refuse("\"" + shortened(word) + "\" is no number of metres");
     return v;

@@ -194,6 +194,16 @@ TEST(RegionKeys, AreReadAsWritten) {
   EXPECT_EQ(region->nearest_part({-1, 1.5, 0.5}), "region.keep_in");
 }
 
+TEST(RegionKeys, NumbersMayHaveAPlusSign) {
+  const auto region = region_of("", keep_in("polygon 0 0  +10 0  1e+1 +5.5  0 5.5 from -2 to +7"));
+  ASSERT_TRUE(region);
+  EXPECT_EQ(region->limits().keep_in->outline.at(1).x(), 10);
+  EXPECT_EQ(region->limits().keep_in->outline.at(2), (Eigen::Vector2d(10, 5.5)));
+  EXPECT_EQ(region->limits().keep_in->high_m, 7);
+  for (const char* none : {"+", "+-1", "++1", "+ 1"})
+    EXPECT_FALSE(refusal(keep_in(std::string("box 0 0 0 1 1 ") + none)).empty()) << none;
+}
+
 TEST(RegionKeys, WithoutLimitsThereIsNoRegion) {
   EXPECT_FALSE(region_of("", RegionKeys{}));
   EXPECT_FALSE(region_in("", boost::property_tree::ptree()));
