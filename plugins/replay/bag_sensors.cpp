@@ -141,8 +141,7 @@ void BagSensors::queue(StampCheck<QueuedSample>::Verdict samples) {
 
 void BagSensors::queue(core::ImuSample sample, const MessagePlace& place) {
   if (last_imu_ && sample.stamp < *last_imu_)
-    return faults_.add(text_of(place),
-                       "its stamp " + decimal_seconds(sample.stamp) + " s goes back in time");
+    return faults_.add(text_of(place), "its stamp " + decimal_seconds(sample.stamp) + " s goes back in time");
   last_imu_ = sample.stamp;
   constexpr double kStandardGravity = 9.80665;
   if (recording_.info.imu_force_unit == ForceUnit::g) sample.specific_force_mps2 *= kStandardGravity;
@@ -237,8 +236,7 @@ WrittenTruth write_truth(const std::string& path, const std::string& topic, cons
   MessageDecoder decoder(bag->connections());
   std::vector<bool> wanted;
   for (const Connection& c : bag->connections()) wanted.push_back(c.topic == topic && is_pose_type(c.type));
-  if (std::find(wanted.begin(), wanted.end(), true) == wanted.end())
-    throw no_poses(path, topic);
+  if (std::find(wanted.begin(), wanted.end(), true) == wanted.end()) throw no_poses(path, topic);
   bag->select(std::move(wanted));
   std::ofstream out(tum_file, std::ios::trunc);
   WrittenTruth written;

@@ -75,8 +75,8 @@ class BagSensors final : public SensorStream {
 struct WrittenTruth {
   std::size_t poses = 0, damaged = 0;
 };
-/// Writes the poses of a bag's topic in the TUM format. For the evaluation only. Throws InputError if there is
-/// none.
+/// Writes the poses of a bag's topic in the TUM format. For the evaluation only. Throws InputError if there
+/// is none.
 WrittenTruth write_truth(const std::string& bag, const std::string& topic, const std::string& tum_file);
 
 }  // namespace karst::replay

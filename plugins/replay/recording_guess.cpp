@@ -241,15 +241,16 @@ class Guesser {
   /// recording file says goes before that, key by key.
   void guess_mounting(const CloudFacts& lidar, const ImuFacts* imu, bool imu_named) {
     const bool imu_by_hand = imu && (imu_named || given("imu.rotation"));
-    const bool mounted = mount_by_transforms(lidar, imu, true) ||
-                         (imu_by_hand && mount_by_transforms(lidar, imu, false));
+    const bool mounted =
+        mount_by_transforms(lidar, imu, true) || (imu_by_hand && mount_by_transforms(lidar, imu, false));
     const bool by_hand = given("lidar.position") || given("lidar.rotation") || given("imu.rotation");
     if (!mounted && !by_hand) ground("The body's frame is the LiDAR's, " + lidar.frame + ".");
     if (by_hand) ground("Of the mounting, what the recording file says is used.");
     if (!imu || guess.info.imu_topic == imu->topic) return;
     if (!imu_by_hand)
       return ground("The IMU " + imu->topic + " is not used: no transform tells how its frame, " +
-                    imu->frame + ", is turned against the LiDAR's. Name it with bag.imu, and give imu.rotation.");
+                    imu->frame +
+                    ", is turned against the LiDAR's. Name it with bag.imu, and give imu.rotation.");
     guess.info.imu_topic = imu->topic;
     ground("The IMU " + imu->topic + " is used as the recording file says" +
            (given("imu.rotation") ? "." : ", as if its frame were the body's: imu.rotation is not given."));
@@ -309,7 +310,8 @@ RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& giv
 
 std::string comment_text(std::string_view text) {
   std::string line = core::printable(text);
-  std::replace_if(line.begin(), line.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
   return line;
 }
 
@@ -334,7 +336,8 @@ std::string recording_info_text(const RecordingGuess& guess) {
     if (value == unset[i].second) continue;
     const auto dot = key.find('.');
     if (has_controls(value)) {
-      text += "; " + key + " \"" + comment_text(value) + "\": a recording file cannot have its control characters\n";
+      text += "; " + key + " \"" + comment_text(value) +
+              "\": a recording file cannot have its control characters\n";
       continue;
     }
     enter(dot == std::string::npos ? "" : key.substr(0, dot));

@@ -20,7 +20,8 @@ struct RecordingGuess {
 RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given = {},
                                const std::set<std::string>& keys = {});
 
-/// `text` as part of a comment, whatever a bag's names have in them: on one line, and without control characters.
+/// `text` as part of a comment, whatever a bag's names have in them: on one line, and without control
+/// characters.
 std::string comment_text(std::string_view text);
 
 /// The keys that are not at their defaults, as text of a recording.info, with the grounds as comments.

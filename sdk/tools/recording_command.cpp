@@ -59,8 +59,8 @@ void print_survey(const replay::BagSurvey& survey, const replay::RecordingGuess&
   print_out("; %-30s %-32s %9s %9s %9s %12s\n", "topic", "type", "messages", "Hz", "MB", "longest gap");
   for (const auto& t : survey.topics)
     print_out("; %-30s %-32s %9zu %9.2f %9.2f %10.3f s\n", replay::comment_text(t.topic).c_str(),
-              replay::comment_text(t.type).c_str(), t.messages,
-              t.rate_hz(), static_cast<double>(t.bytes) * 1e-6, core::seconds(t.longest_gap));
+              replay::comment_text(t.type).c_str(), t.messages, t.rate_hz(),
+              static_cast<double>(t.bytes) * 1e-6, core::seconds(t.longest_gap));
   print_out(";\n%s", replay::recording_info_text(guess).c_str());
 }
 

@@ -165,7 +165,8 @@ int replay_scans(const ReplayArguments& args) {
   const ReplayLine line(args.quiet || args.json, recording.sensors->scans());
   try {
     if (recording.is_bag && recording.info.truth_topic != "none")
-      truth = replay::write_truth(recording.path, recording.info.truth_topic, (run_dir / "truth.tum").string());
+      truth =
+          replay::write_truth(recording.path, recording.info.truth_topic, (run_dir / "truth.tum").string());
     summary = replay::replay_recording(
         *recording.sensors, options, run_dir,
         [&](std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
@@ -189,9 +190,11 @@ int replay_scans(const ReplayArguments& args) {
     print_summary(summary, recording.sensors->scans_without_returns(), metrics, run_dir, !args.no_report);
   }
   if (truth.damaged > 0)
-    print_error("karst: %s: topic %s: %zu of its messages are no poses that can be read; truth.tum has the other %zu\n",
-                core::printable(recording.path).c_str(), core::printable(recording.info.truth_topic).c_str(),
-                truth.damaged, truth.poses);
+    print_error(
+        "karst: %s: topic %s: %zu of its messages are no poses that can be read; truth.tum has the other "
+        "%zu\n",
+        core::printable(recording.path).c_str(), core::printable(recording.info.truth_topic).c_str(),
+        truth.damaged, truth.poses);
   if (const replay::SensorStream::Damage d = recording.sensors->damage(); d.count > 0) {
     print_damage(d);
     return 1;

@@ -76,8 +76,9 @@ bool is_bag(const std::string& path);
 /// True for a folder with bags in it, as ROS 2 records them.
 bool is_folder_of_bags(const std::string& path);
 
-/// Opens by the file's first bytes; of a folder, all of its bags as one, by the times of their messages. A bag that is cut or has no index is
-/// read through once to find its messages. Throws InputError if nothing of it can be read.
+/// Opens by the file's first bytes; of a folder, all of its bags as one, by the times of their messages. A
+/// bag that is cut or has no index is read through once to find its messages. Throws InputError if nothing of
+/// it can be read.
 std::unique_ptr<Bag> open_bag(const std::string& path);
 
 std::unique_ptr<Bag> open_mcap(const std::string& path);

@@ -35,8 +35,8 @@ struct Field {
   std::size_t offset = 0, stride = 0;
 };
 
-/// Keeps each role but `none` for the first field that has it; later ones become `none`. Returns which of x, y
-/// and z no field has, or "".
+/// Keeps each role but `none` for the first field that has it; later ones become `none`. Returns which of x,
+/// y and z no field has, or "".
 std::string missing_coordinate(std::vector<Role>& roles);
 /// The same; throws InputError if x, y or z is missing.
 void check_roles(std::vector<Role>& roles, const std::string& file, const std::string& place);

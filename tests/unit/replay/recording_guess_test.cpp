@@ -475,9 +475,9 @@ void add_scans(BagContent& bag, int count, const std::function<TimeNs(int k)>& s
       for (const float v : {5 * std::cos(angle), 5 * std::sin(angle), 0.1f}) put(data, v);
       driver.rest(data, i, stamp_of(k), i * 100 * kMillisecond / kPoints);
     }
-    bag.messages.push_back({t, kStart + k * 100 * kMillisecond,
-                            test::point_cloud2(Serializer::cdr_little, stamp_of(k), "lidar", driver.fields,
-                                               driver.step, data)});
+    bag.messages.push_back(
+        {t, kStart + k * 100 * kMillisecond,
+         test::point_cloud2(Serializer::cdr_little, stamp_of(k), "lidar", driver.fields, driver.step, data)});
   }
 }
 struct Sweeps {
@@ -516,7 +516,8 @@ TEST(BagSensors, AClockThatIsSetBackIsOneFaultAndTimeGoesOn) {
     }
     ASSERT_EQ(sweeps.stamps.size(), 80u);
     for (std::size_t k = 0; k < 80; ++k)
-      EXPECT_NEAR(core::seconds(sweeps.stamps[k] - kStart), 0.1 * static_cast<double>(k) + 0.0995, 0.0051) << k;
+      EXPECT_NEAR(core::seconds(sweeps.stamps[k] - kStart), 0.1 * static_cast<double>(k) + 0.0995, 0.0051)
+          << k;
     EXPECT_TRUE(std::is_sorted(imu.begin(), imu.end()));
     const auto damage = sensors.damage();
     ASSERT_EQ(damage.count, 2u) << joined(damage.first);  // one of each topic

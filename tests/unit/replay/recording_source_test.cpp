@@ -32,7 +32,8 @@ TEST(RecordingSource, ANameThatIsWrongIsNoFolderOfScans) {
 TEST(RecordingSource, AFolderWithScansAndBagsIsAmbiguous) {
   Folder dir;
   const std::string folder = dir.path().string();
-  EXPECT_NE(source_error_of(folder).find("and no bag (.bag, .mcap, .db3)"), std::string::npos) << source_error_of(folder);
+  EXPECT_NE(source_error_of(folder).find("and no bag (.bag, .mcap, .db3)"), std::string::npos)
+      << source_error_of(folder);
   dir.write("000.pcd", "x");
   dir.write("a.mcap", "x");
   EXPECT_EQ(source_error_of(folder), folder + ": holds scans and bags: name the bag");

@@ -1,4 +1,5 @@
-// Stamps against the times of recording: damaged ones, clocks that are set, and numbers at the ends of 64 bits.
+// Stamps against the times of recording: damaged ones, clocks that are set, and numbers at the ends of 64
+// bits.
 #include "plugins/replay/stamp_check.h"
 
 #include <gtest/gtest.h>

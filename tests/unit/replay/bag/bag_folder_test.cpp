@@ -1,4 +1,5 @@
-// Bags as a whole: folders of them, recorded one after another or side by side, and files that cannot be read.
+// Bags as a whole: folders of them, recorded one after another or side by side, and files that cannot be
+// read.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -36,8 +37,7 @@ Read read(Bag& bag) {
 
 TEST(BagFolder, BagsRecordedSideBySideAreMergedByTime) {
   Folder dir;
-  dir.write("lidar.mcap",
-            test::mcap_file(kTwoTopics, every(100, 0, 0, 40), {Compression::zstd, true, 7}));
+  dir.write("lidar.mcap", test::mcap_file(kTwoTopics, every(100, 0, 0, 40), {Compression::zstd, true, 7}));
   test::write_db3((dir.path() / "more.db3").string(), kTwoTopics, every(10, 1, 0, 400), true);
   dir.write("late.bag", test::ros1_bag(kTwoTopics, every(1000, 0, 4, 9), {Compression::lz4, true, 2}));
   const auto bag = open_bag(dir.path().string());
@@ -95,7 +95,8 @@ TEST(Bag, TimesOfADatabaseBefore1970AreFaults) {
 TEST(Bag, FilesThatAreCompressedOrEmptyAreNamedSo) {
   Folder dir;
   const std::string zstd = dir.write("a_0.db3.zstd", std::string("\x28\xb5\x2f\xfd", 4) + "rest");
-  EXPECT_NE(opening_error_of(zstd).find("is compressed as a file"), std::string::npos) << opening_error_of(zstd);
+  EXPECT_NE(opening_error_of(zstd).find("is compressed as a file"), std::string::npos)
+      << opening_error_of(zstd);
   EXPECT_NE(opening_error_of(dir.path().string()).find("is compressed as a file"), std::string::npos)
       << opening_error_of(dir.path().string());
   EXPECT_NE(opening_error_of(dir.write("b.bag", "")).find("b.bag: is empty"), std::string::npos);
@@ -108,7 +109,8 @@ TEST(Bag, McapMessagesOutsideOfChunksComeInTheOrderOfTime) {
   for (const core::TimeNs time : {0, 100}) messages.push_back({1, time, large});
   for (const core::TimeNs time : {900, 200}) messages.push_back({0, time, "x"});
   messages.push_back({1, 500, large});
-  const auto bag = open_bag(dir.write("a.mcap", test::mcap_file(kTwoTopics, messages, {Compression::none, true, 0})));
+  const auto bag =
+      open_bag(dir.write("a.mcap", test::mcap_file(kTwoTopics, messages, {Compression::none, true, 0})));
   EXPECT_EQ(read(*bag).times, (std::vector<core::TimeNs>{0, 100, 200, 500, 900}));
 }
 
