@@ -8,6 +8,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <cstring>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -89,6 +90,12 @@ class Client {
         write(json{{"op", "subscribe"},
                    {"subscriptions", {{{"id", c["id"].get<int>() + 100}, {"channelId", c["id"]}}}}}
                   .dump());
+  }
+  /// Once this returns, the server has taken what was asked before: it answers in order.
+  void wait_until_taken() {
+    write("garbage");
+    while (read_text()["op"] != "status") {
+    }
   }
   /// The time of the next message of a subscription.
   std::uint64_t next_message_ns() {
@@ -290,9 +297,16 @@ TEST_F(Live, OfAThousandConnectionsAFewAreHeldAndTheRestClosed) {
       if (sockets.size() > 200) sockets.erase(sockets.begin());
     }
   }
-  std::this_thread::sleep_for(600ms);
-  Client first(at()), second(at());
-  EXPECT_EQ(first.read_text()["op"], "serverInfo");
+  const auto follows = [this] {  // once those that ask for nothing have been closed
+    for (int attempt = 0; attempt < 1000; ++attempt, std::this_thread::sleep_for(50ms)) try {
+        return std::make_unique<Client>(at());
+      } catch (const beast::system_error&) {
+      }
+    return std::unique_ptr<Client>();
+  };
+  const auto first = follows(), second = follows();
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->read_text()["op"], "serverInfo");
   EXPECT_THROW(Client third(at()), beast::system_error);  // as many follow as may
 }
 
@@ -303,8 +317,9 @@ TEST_F(Live, AClientThatReadsNothingIsLeftAndTheOthersGoOn) {
   Client dead(at()), alive(at());
   dead.socket().set_option(asio::socket_base::receive_buffer_size(4096));
   dead.follow("/events");
+  dead.wait_until_taken();
   alive.follow("/tf");
-  std::this_thread::sleep_for(200ms);
+  alive.wait_until_taken();
   for (int i = 0; i < 200; ++i)
     flight_->listener().on_record(RecordPart::events,
                                   R"({"t":1.5,"kind":"log","text":")" + std::string(100'000, 'x') + "\"}\n");
@@ -318,14 +333,19 @@ TEST_F(Live, AClientThatReadsNothingIsLeftAndTheOthersGoOn) {
 
 TEST_F(Live, ASlowClientIsToldWhatItMisses) {
   start(setup());
-  Client slow(at());
+  Client slow(at()), other(at());
   slow.follow("/events");
-  std::this_thread::sleep_for(200ms);
+  slow.wait_until_taken();
+  other.follow("/tf");
+  other.wait_until_taken();
   for (int i = 0; i < 400; ++i)
     flight_->listener().on_record(RecordPart::events,
                                   R"({"t":1.5,"kind":"log","text":")" + std::string(100'000, 'x') + "\"}\n");
-  std::this_thread::sleep_for(1500ms);
-  const json told = slow.read_text();
+  pose(2);
+  other.next_message_ns();  // so all of them have been published, of which most found no room
+  json told;
+  do told = slow.read_text();
+  while (!told.contains("id"));
   EXPECT_EQ(told["id"], "dropped");
   EXPECT_NE(told["message"].get<std::string>().find("of /events"), std::string::npos) << told;
 }
@@ -334,7 +354,7 @@ TEST_F(Live, ARecordThatNoRecorderWritesIsLoggedAndTheRestServed) {
   start(setup());
   Client client(at());
   client.follow("/tf");
-  std::this_thread::sleep_for(200ms);
+  client.wait_until_taken();
   flight_->listener().on_record(RecordPart::trajectory, "nonsense\n");
   pose(4);
   EXPECT_EQ(client.next_message_ns(), 4'000'000'000u);
