@@ -107,7 +107,9 @@ TEST(EarlierMap, MovedCellsKeepAllRockAndInventNoFreeSpace) {
       EXPECT_GT(there->second, 0);
     });
     for (const auto& [key, log_odds] : by_key)
-      if (log_odds < 0) EXPECT_EQ(from.at(T.inverse() * from.center_of(key)), Cell::free);
+      if (log_odds < 0) {
+        EXPECT_EQ(from.at(T.inverse() * from.center_of(key)), Cell::free);
+      }
   }
 }
 
