@@ -21,7 +21,7 @@
 namespace karst::flight {
 namespace {
 
-constexpr std::array kPriorities = {45, 40, 30, 0, 0, 0};  // by role; 0: a usual thread
+constexpr std::array kPriorities = {45, 40, 30, 0, 0, 0, 0};  // by role; 0: a usual thread
 constexpr std::size_t kStackBytes = 512 * 1024;            // of the loop's thread, touched before the flight
 
 /// 0, or the reason why not.
@@ -108,10 +108,11 @@ ThreadRole role_of(core::Lane lane) {
     case core::Lane::map:
       return ThreadRole::map;
     case core::Lane::pictures:
+      return ThreadRole::pictures;
     case core::Lane::registration:
       break;
   }
-  return ThreadRole::pictures;
+  return ThreadRole::registration;
 }
 
 RealTimeProcess::RealTimeProcess(const RealTimeOptions& options, const std::string& mission_file)

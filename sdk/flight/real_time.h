@@ -14,7 +14,7 @@ namespace karst::flight {
 /// Highest priority first. The watchdog must see a loop that spins. All are below 50, the priority of the
 /// kernel's interrupt threads with PREEMPT_RT, which bring the vehicle's messages. From sensing on they are
 /// usual threads: with a priority they would starve a policy in a process of its own, which has none.
-enum class ThreadRole { watchdog, loop, localization, sensing, map, pictures };
+enum class ThreadRole { watchdog, loop, localization, sensing, map, pictures, registration };
 constexpr auto names_of(ThreadRole) {
   using enum ThreadRole;
   return std::to_array<core::Named<ThreadRole>>({{watchdog, "watchdog"},
@@ -22,7 +22,8 @@ constexpr auto names_of(ThreadRole) {
                                                  {localization, "localization"},
                                                  {sensing, "sensing"},
                                                  {map, "map"},
-                                                 {pictures, "pictures"}});
+                                                 {pictures, "pictures"},
+                                                 {registration, "registration"}});
 }
 int priority_of(ThreadRole role);  // 0: a usual thread
 ThreadRole role_of(core::Lane lane);

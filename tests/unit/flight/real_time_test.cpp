@@ -42,13 +42,13 @@ TEST(ThreadRoles, TheOrderIsWatchdogLoopLocalizationAndAUsualThreadStarvesNoPoli
     last = priority_of(role);
   }
   EXPECT_GE(last, 1) << "above every usual thread";
-  for (const ThreadRole role : {sensing, map, pictures}) EXPECT_EQ(priority_of(role), 0);
+  for (const ThreadRole role : {sensing, map, pictures, registration}) EXPECT_EQ(priority_of(role), 0);
   std::set<ThreadRole> of_lanes;
   for (const auto& [lane, name] : core::names_of(core::Lane{})) {
     of_lanes.insert(role_of(lane));
     EXPECT_STREQ(core::name_of(role_of(lane)), name);
   }
-  EXPECT_EQ(of_lanes.size(), 4u);
+  EXPECT_EQ(of_lanes.size(), 5u);
 }
 
 /// Whether this machine allows it or not: what is said is what holds.
