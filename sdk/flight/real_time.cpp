@@ -22,7 +22,7 @@ namespace karst::flight {
 namespace {
 
 constexpr std::array kPriorities = {45, 40, 30, 0, 0, 0, 0};  // by role; 0: a usual thread
-constexpr std::size_t kStackBytes = 512 * 1024;            // of the loop's thread, touched before the flight
+constexpr std::size_t kStackBytes = 512 * 1024;  // of the loop's thread, touched before the flight
 
 /// 0, or the reason why not.
 int set_fifo(int priority) {

@@ -133,7 +133,8 @@ TEST(RealTimeThreads, EachLaneIsSetUpOnItsOwnThreadBeforeItsFirstJob) {
                           threads.insert(std::this_thread::get_id());
                         }});
   }
-  EXPECT_EQ(lanes, (std::set{Lane::sensing, Lane::localization, Lane::map, Lane::pictures, Lane::registration}));
+  EXPECT_EQ(lanes,
+            (std::set{Lane::sensing, Lane::localization, Lane::map, Lane::pictures, Lane::registration}));
   EXPECT_EQ(threads.size(), 5u);
   EXPECT_EQ(threads.count(std::this_thread::get_id()), 0u);
 }
