@@ -166,11 +166,8 @@ class LiveServer::Network::Connection : public std::enable_shared_from_this<Conn
     ws_.async_close(reason, [self = shared_from_this()](error_code error) { self->end(error); });
   }
 
-  void cut_off(const std::string& why) {
-    if (reason_.empty()) reason_ = why;
-    closing_ = true;
-    lowest().close();  // whatever is under way ends with an error
-  }
+  /// At once. Nothing need be under way whose end would tell of it.
+  void cut_off(const std::string& why) { end(why); }
 
  private:
   beast::tcp_stream& lowest() { return beast::get_lowest_layer(ws_); }

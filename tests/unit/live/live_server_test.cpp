@@ -260,7 +260,7 @@ TEST_F(Live, GarbageHugeHeadersAndEndlessHandshakesAreClosed) {
   EXPECT_EQ(Client(at()).read_text()["op"], "serverInfo");
 }
 
-TEST_F(Live, AHugeFrameEndsTheConnectionWithTheReasonLogged) {
+TEST_F(Live, AHugeFrameAndNonsenseEndTheConnectionWithTheReasonLogged) {
   start(setup());
   Client huge(at());
   huge.read_text();
@@ -271,6 +271,13 @@ TEST_F(Live, AHugeFrameEndsTheConnectionWithTheReasonLogged) {
   } catch (const beast::system_error&) {
   }
   EXPECT_TRUE(log_.has("closed: The WebSocket message exceeded")) << log_.text();
+  Client nonsense(at());
+  try {
+    for (int i = 0; i < 1000; ++i) nonsense.write("{\"op\":\"subscribe\",\"subscriptions\":7}");
+    for (;;) nonsense.read();
+  } catch (const beast::system_error&) {
+  }
+  EXPECT_TRUE(log_.has("make no sense")) << log_.text();
   EXPECT_EQ(Client(at()).read_text()["op"], "serverInfo");
 }
 
