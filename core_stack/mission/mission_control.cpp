@@ -303,9 +303,11 @@ void MissionControl::fly_phase() {
       return_home_.watch_time();
       break;
     case Phase::home:
+      earlier_map_.end();
       return_home_.step();
       break;
     case Phase::land:
+      earlier_map_.end();
       land();
       break;
     case Phase::manual:
@@ -422,9 +424,10 @@ void MissionControl::on_gap() { onboard_.flight.lose_track(); }
 void MissionControl::let_go(const std::string& reason) {
   onboard_.flight.let_go();
   if (phases_.in(Phase::manual) || emergency_) return;
-  resumes_ = phases_.in(Phase::home) || phases_.in(Phase::land)     ? phases_.phase()
-             : phases_.in(Phase::explore) || onboard_.vehicle.lidar ? Phase::explore
-                                                                    : Phase::look;
+  const bool looks = !onboard_.vehicle.lidar || earlier_map_.undecided() || !earlier_map_.refusal().empty();
+  resumes_ = phases_.in(Phase::home) || phases_.in(Phase::land) ? phases_.phase()
+             : phases_.in(Phase::explore) || !looks             ? Phase::explore
+                                                                : Phase::look;
   path_.brake(now());  // nothing that was planned before is flown later
   onboard_.flight.hover_here(now());
   goals_.drop_next(GoalFate::superseded, reason, now());
@@ -458,7 +461,8 @@ void MissionControl::take_over() {
   // In the middle of its landing it may be too near to the ground to fly anywhere first.
   if (resumes_ == Phase::land && lands_at_home()) return enter(Phase::land, "the core steers again");
   if (resumes_ == Phase::home || resumes_ == Phase::land) return return_home_.begin("the core steers again");
-  if (resumes_ == Phase::look) onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
+  if (resumes_ == Phase::look && !onboard_.vehicle.lidar)
+    onboard_.flight.look_around(now(), turn_to_see_all_around(onboard_.vehicle));
   enter(resumes_, "the core steers again");
 }
 

@@ -82,4 +82,19 @@ bool same_token(std::string_view given, std::string_view expected) {
          sodium_memcmp(given.data(), expected.data(), expected.size()) == 0;
 }
 
+bool is_from_here(std::string_view host, std::string_view origin) {
+  const auto names_here = [](std::string_view authority) {
+    const std::string_view name = authority.substr(0, authority.rfind(':'));
+    return name == "localhost" || name == "[::1]" ||
+           (name.starts_with("127.") && name.find_first_not_of("0123456789.") == std::string_view::npos);
+  };
+  if (!names_here(host)) return false;
+  if (origin.empty() || origin == "https://app.foxglove.dev" || origin == "https://app.foxglove.com")
+    return true;
+  const std::size_t scheme = origin.find("://");
+  if (scheme == std::string_view::npos) return false;
+  const bool is_site = origin.starts_with("http://") || origin.starts_with("https://");
+  return !is_site || names_here(origin.substr(scheme + 3));
+}
+
 }  // namespace karst::live

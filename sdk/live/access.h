@@ -27,4 +27,9 @@ std::string_view token_of(std::string_view target, std::string_view authorizatio
 /// In a time that tells nothing of where they differ.
 bool same_token(std::string_view given, std::string_view expected);
 
+/// Whether a request without a token may follow the flight: it was sent to this machine by name or number,
+/// and not by a page of another site, whose browser names it as the origin. Foxglove's site may, and so may
+/// applications, whose origins are no sites.
+bool is_from_here(std::string_view host, std::string_view origin);
+
 }  // namespace karst::live

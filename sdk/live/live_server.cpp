@@ -181,6 +181,9 @@ class LiveServer::Network::Connection : public std::enable_shared_from_this<Conn
     const std::string_view token = token_of(target, view(request_[http::field::authorization]));
     if (!network_.setup().token.empty() && !same_token(token, network_.setup().token))
       return answer(http::status::unauthorized, "the token is missing, or another: /?token=...");
+    if (network_.setup().token.empty() &&
+        !is_from_here(view(request_[http::field::host]), view(request_[http::field::origin])))
+      return answer(http::status::forbidden, "a page of another site needs a token: --live-token");
     if (request_.method() != http::verb::get)
       return answer(http::status::method_not_allowed, "this server only answers GET");
     if (target.substr(0, target.find('?')) != "/") return answer(http::status::not_found, "there is / alone");

@@ -6,10 +6,8 @@
 
 namespace karst::replay {
 
-/// One line for each closure, used or not; docs/loops.md describes the columns. `found_ms`: wall clock time
-/// of the search for each. Stamps are those of the recording: `origin` is added. Throws InputError if the
-/// file cannot be written.
-void write_loops(const std::filesystem::path& file, const core::LoopClosing& loops,
-                 const std::vector<double>& found_ms, core::TimeNs origin);
+/// One line for each closure, used or not; docs/loops.md describes the columns. Stamps are those of the
+/// recording: `origin` is added. Throws InputError if the file cannot be written.
+void write_loops(const std::filesystem::path& file, const core::LoopClosing& loops, core::TimeNs origin);
 
 }  // namespace karst::replay

@@ -176,8 +176,8 @@ class LoopSearch {
     timed([&] { loops_.finish(); });
   }
   const core::LoopClosing& loops() const { return loops_; }
-  const std::vector<double>& found_ms() const { return found_ms_; }  // of each closure
   double all_s() const { return all_s_; }
+  double slowest_s() const { return slowest_s_; }
 
  private:
   static constexpr double kAnew_m = 10, kSpeed_mps = 2, kGap_s = 1, kGapDrift_mps = 0.05;
@@ -188,14 +188,25 @@ class LoopSearch {
     work();
     const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     all_s_ += took_s;
-    found_ms_.resize(loops_.closures().size(), 1e3 * took_s);
+    slowest_s_ = std::max(slowest_s_, took_s);
   }
 
   core::LoopClosing loops_;
   std::vector<core::Vec3f> points_;
   std::optional<TimeNs> last_;
-  std::vector<double> found_ms_;
-  double all_s_ = 0;
+  double all_s_ = 0, slowest_s_ = 0;
+};
+
+/// A folder that is removed when its scope ends, by an exception too.
+struct PassingFolder {
+  explicit PassingFolder(std::filesystem::path p) : path(std::move(p)) { std::filesystem::remove_all(path); }
+  ~PassingFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  PassingFolder(const PassingFolder&) = delete;
+  PassingFolder& operator=(const PassingFolder&) = delete;
+  std::filesystem::path path;
 };
 
 /// Maps the scans again, at corrected poses, into a folder whose files then replace those of the run
@@ -205,8 +216,8 @@ bool map_again(SensorStream& sensors, const ReplayOptions& options, const std::f
                const Ending& ending, const ReplayProgress& progress) {
   namespace fs = std::filesystem;
   const TimeNs origin = sensors.begin();
-  const fs::path part = run_dir / "corrected.part";
-  fs::remove_all(part);
+  const PassingFolder folder(run_dir / "corrected.part");
+  const fs::path& part = folder.path;
   {
     Mapping mapping(options, part, origin, sensors.scans());
     for (std::size_t i = 0; i < placed.size(); ++i) {
@@ -220,17 +231,13 @@ bool map_again(SensorStream& sensors, const ReplayOptions& options, const std::f
       mapping.add(*sweep, p);
       core::LoamPose shown;
       shown.stamp = p.stamp, shown.T_world_body = p.T_world_body, shown.valid = p.valid;
-      if (!progress(i + 1, shown, mapping.map())) {
-        fs::remove_all(part);
-        return false;
-      }
+      if (!progress(i + 1, shown, mapping.map())) return false;
     }
     mapping.end(ending.outcome, ending.reason);
   }
   fs::rename(run_dir / "trajectory.tum", run_dir / "trajectory_odometry.tum");
   for (const auto& file : fs::directory_iterator(part))
     fs::rename(file.path(), run_dir / file.path().filename());
-  fs::remove(part);
   return true;
 }
 
@@ -315,14 +322,14 @@ ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& optio
   if (search) {
     search->finish();
     const core::LoopClosing& loops = search->loops();
-    write_loops(run_dir / "loops.csv", loops, search->found_ms(), origin);
+    write_loops(run_dir / "loops.csv", loops, origin);
     summary.loops = {loops.closed(),
                      loops.closures().size() - loops.closed(),
                      loops.submaps().size(),
                      loops.bytes(),
                      loops.path_m(),
                      search->all_s(),
-                     0};
+                     search->slowest_s()};
     if (loops.closed() > 0) {
       const core::TrackCorrection corrected = loops.correction();
       for (const PlacedScan& p : placed)

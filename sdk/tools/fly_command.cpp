@@ -257,6 +257,16 @@ flight::FlightRequest request_of(const FlyArguments& args, const flight::Mission
   return request;
 }
 
+void check_live(const FlyArguments& args) {
+  if (args.live.asked && args.live.address.empty())
+    throw core::InputError("karst fly", "--live=", "expected --live=ADDRESS:PORT, or --live alone");
+  if (args.live.asked && args.mission_file.find(':') != std::string::npos && !fs::exists(args.mission_file))
+    throw core::InputError("karst fly", "--live " + args.mission_file,
+                           "an address stands after an equals sign: --live=" + args.mission_file);
+  if (!args.live.asked && !args.live.token.empty() && !std::getenv("KARST_LIVE_TOKEN"))
+    throw core::InputError("karst fly", "--live-token", "the flight is not served: add --live");
+}
+
 int fly(const FlyArguments& args, const PolicyChooser& choose_policy, const LiveStarter& start_live) {
   if (args.keys) {
     std::fputs(flight::mission_help(flight::named_vehicle(args.mission_file, args.overrides)).c_str(),
@@ -271,7 +281,7 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy, const Live
   make_cave_cache(args.cave_cache);
   flight::FlightRequest request = request_of(args, mission);
   std::shared_ptr<core::RecordListener> live;  // outlives the flight
-  if (!args.live.address.empty() && args.check.empty()) live = start_live(mission, request, args.live);
+  if (args.live.asked && args.check.empty()) live = start_live(mission, request, args.live);
   request.listener = live.get();
 
   // All inputs are checked before anything is written.
@@ -370,7 +380,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter sta
       "a second of flight takes a second, as on a vehicle, with real-time priorities and locked memory where "
       "they are allowed; no two flights are the same: " +
           core::doc_path("docs/real_time.md"));
-  fly_app->add_flag(
+  const CLI::Option* live_flag = fly_app->add_flag(
       "--live{127.0.0.1:8765}", args->live.address,
       "=ADDRESS:PORT: serve the flight as it goes, for Foxglove and for a page at this address; "
       "127.0.0.1:8765 if no address is given: " +
@@ -407,7 +417,9 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter sta
                     "list every key of a mission file and end: of the simulator, or of the vehicle that the "
                     "mission or --set "
                     "names");
-  fly_app->callback([args, choose = std::move(choose_policy), live = std::move(start_live)] {
+  fly_app->callback([args, live_flag, choose = std::move(choose_policy), live = std::move(start_live)] {
+    args->live.asked = live_flag->count() > 0;
+    check_live(*args);
     host::take_policy_file(args->overrides.policy, args->plugins);
     if (const int code = fly(*args, choose, live); code != 0) throw CLI::RuntimeError(code);
   });

@@ -25,6 +25,7 @@ using PolicyChooser = std::function<void(flight::Mission&)>;
 
 /// What --live and --live-token say.
 struct LiveArguments {
+  bool asked = false;
   std::string address, token;
 };
 /// Serves the flight that it then listens to: serve_live (live_flight_option.h), or what refuses in a program

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 
 #include "sdk/flight/flight_setup.h"
 #include "sdk/live/live_flight.h"
@@ -30,7 +31,7 @@ std::shared_ptr<core::RecordListener> serve_live(const flight::Mission& mission,
   setup.session = session_name();
   setup.metadata = {{"policy", mission.policy},
                     {"vehicle", mission.vehicle},
-                    {"cave", mission.cave},
+                    {"cave", std::filesystem::path(mission.cave).filename().string()},
                     {"seed", std::to_string(mission.seed)}};
   if (request.notes) setup.log = [](const std::string& text) { print_error("live: %s\n", text.c_str()); };
   const auto live = std::make_shared<live::LiveFlight>(std::move(setup), mission.core.map.resolution_m,

@@ -111,7 +111,8 @@ void print_summary(const replay::ReplaySummary& s, std::size_t without_returns, 
     print_out("  loops            %zu closures; positions corrected by up to %.2f m%s\n", l.closed,
               l.largest_correction_m, l.mapped_again ? "" : " (stopped: not applied)");
   if (s.loops.submaps > 0 && s.loops.path_m > 0)
-    print_out("  search for loops %.1f s; %zu submaps, %.1f MB a km\n", s.loops.search_s, s.loops.submaps,
+    print_out("  search for loops %.1f s, %.2f s at most after a scan; %zu submaps, %.1f MB a km\n",
+              s.loops.search_s, s.loops.slowest_s, s.loops.submaps,
               1e-3 * static_cast<double>(s.loops.bytes) / s.loops.path_m);
   if (s.without_times)
     print_out(

@@ -1,77 +1,146 @@
-"""earlier_map_figures.py RUNS SEED...: of earlier_map_campaign.sh, second flights with and without the earlier map, paired by cave and seed, by the rock surface
-that the first flight had not seen (map_growth.bin), more than a cell beyond its rock."""
-import json, math, os, statistics, struct, sys
-R = sys.argv[1] + "/"
-CELL = 0.2; AREA = CELL ** 2; HORIZON = 120
+#!/usr/bin/env python3
+"""earlier_map_figures.py RUNS SEED...: the figures of docs/results/earlier_map.md, of the flights of
+earlier_map_campaign.sh in RUNS.
+
+Second flights with and without the earlier map are paired by cave and seed. New rock is rock of map_growth.bin that
+lies more than a cell from all rock of the first flight's map. Known rock is all of a flight's own map; that of the
+earlier map counts from when it is taken in. Times count from the take-off."""
+import json
+import math
+import os
+import statistics
+import struct
+import sys
+
+CELL_M, AREA_M2, HORIZON_S = 0.2, 0.04, 120
+ARMS = ('with', 'without')
+STUDENT = {1: 12.71, 2: 4.303, 3: 3.182, 4: 2.776, 5: 2.571, 6: 2.447, 7: 2.365, 8: 2.306, 9: 2.262}  # 97.5 %
+
+
 def events(run, kind):
-    return [e for e in map(json.loads, open(run + "/events.jsonl")) if e["kind"] == kind]
-def records(run):
-    data = open(run + "/map_growth.bin", "rb").read()
-    return struct.iter_unpack("<4i", data[:len(data) // 16 * 16])
+    return [e for e in map(json.loads, open(run + '/events.jsonl')) if e['kind'] == kind]
+
+
+def changes(run):
+    """Cells that become rock (time > 0) or no longer are (time < 0): x, y, z, ms."""
+    data = open(run + '/map_growth.bin', 'rb').read()
+    return struct.iter_unpack('<4i', data[:len(data) // 16 * 16])
+
+
 def rock(run):
     cells = set()
-    for x, y, z, t in records(run): (cells.add if t > 0 else cells.discard)((x, y, z))
+    for x, y, z, t in changes(run):
+        (cells.add if t > 0 else cells.discard)((x, y, z))
     return cells
-def series(run, old, T):
-    """Each second from take-off: m2 of rock beyond `old`."""
-    a, dx, dy, dz = T
-    c, s = math.cos(a), math.sin(a)
-    t0 = next(e["t"] for e in events(run, "phase") if e["phase"] == "takeoff")
-    def new(x, y, z):
-        x, y, z = (x + .5) * CELL - dx, (y + .5) * CELL - dy, (z + .5) * CELL - dz
-        return (math.floor((c * x + s * y) / CELL), math.floor((-s * x + c * y) / CELL), math.floor(z / CELL)) not in old
-    known, count, out = {}, 0, []
-    for x, y, z, t in records(run):
-        while len(out) <= abs(t) / 1000 - t0: out.append(count * AREA)
-        k = (x, y, z)
-        if k not in known: known[k] = new(x, y, z)
-        if known[k]: count += 1 if t > 0 else -1
-    while len(out) <= HORIZON: out.append(count * AREA)
-    return out
-def first_time(curve, m2):
-    return next((float(i) for i, v in enumerate(curve[:HORIZON + 1]) if v >= m2), None)
-def t_interval(xs):
-    q = {2: 12.71, 3: 4.303, 4: 3.182, 5: 2.776, 6: 2.571, 7: 2.447, 8: 2.365, 9: 2.306, 10: 2.262}[len(xs)]
-    m, h = statistics.mean(xs), q * statistics.stdev(xs) / math.sqrt(len(xs))
-    return "%.1f [%.1f, %.1f]" % (m, m - h, m + h)
-rows = []
-for cave in range(101, 111):
-    T = tuple(map(float, open(R + f"turned{cave}.truth").read().split()))
-    start = tuple(map(float, open(R + f"turned{cave}.info").read().split('start "')[1].split()[:3]))
-    old = None
-    for seed in sys.argv[2:]:
-        runs = {arm: R + f"{arm}_{cave}_{seed}" for arm in ("with", "without")}
-        if os.path.exists(runs["with"] + "/metrics.json"):
-            for x in events(runs["with"], "earlier_map"):
-                if x["state"] != "found": print(cave, seed, x["state"], x["reason"]); continue
-                p = [start[i] - T[1 + i] for i in range(3)]
-                p = (math.cos(T[0]) * p[0] + math.sin(T[0]) * p[1], -math.sin(T[0]) * p[0] + math.cos(T[0]) * p[1], p[2])
-                h, q = x["heading"], x["position"]
-                there = (math.cos(h) * p[0] - math.sin(h) * p[1] + q[0], math.sin(h) * p[0] + math.cos(h) * p[1] + q[1], p[2] + q[2])
-                turn = abs((h - T[0] + math.pi) % (2 * math.pi) - math.pi)
-                print("located %d %s attempt %d at %.1f s: %.3f m (%.3f level), %.2f deg, overlap %.3f agreement %.4f residual %.3f rival %.2f; job %.1f s" % (cave, seed, x["attempt"], x["t"], math.dist(there, start), math.dist(there[:2], start[:2]), math.degrees(turn), x["overlap"], x["agreement"], x["residual"], x["rival"], json.load(open(runs["with"] + "/timing.json"))["jobs"]["earlier map"]["total_s"] if "jobs" in json.load(open(runs["with"] + "/timing.json")) else -1))
-        if not all(os.path.exists(r + "/metrics.json") for r in runs.values()): continue
-        if old is None:
-            first = rock(R + f"first_{cave}")
-            old = {(x + i, y + j, z + k) for x, y, z in first for i in (-1, 0, 1) for j in (-1, 0, 1) for k in (-1, 0, 1)}
-        m = {arm: json.load(open(r + "/metrics.json")) for arm, r in runs.items()}
-        rows.append({"cave": cave, "seed": seed, "first": len(first) * AREA, "m": m, "curves": {arm: series(r, old, T) for arm, r in runs.items()}})
-for r in rows:
-    w, o, m = r["curves"]["with"], r["curves"]["without"], r["m"]
-    print("| %d | %s | %.0f | %s | %s | %.0f | %.1f / %.1f | %.2f / %.2f |" % (r["cave"], r["seed"], r["first"], " ".join("%.0f" % w[t] for t in (30, 60, 90, 120)), " ".join("%.0f" % o[t] for t in (30, 60, 90, 120)), m["with"]["added_volume_m3"] or -1, 100 * m["with"]["coverage"], 100 * m["without"]["coverage"], m["with"]["min_clearance_m"], m["without"]["min_clearance_m"]),
-          "contacts", m["with"]["contacts"], m["without"]["contacts"], m["with"]["outcome"], m["without"]["outcome"])
-caves = sorted({r["cave"] for r in rows})
-for target in (50, 100, 250, 500):
-    diffs, a_all, b_all, na, nb = [], [], [], 0, 0
-    for cave in caves:
-        d = []
-        for r in (r for r in rows if r["cave"] == cave):
-            a, b = (first_time(r["curves"][arm], target) for arm in ("with", "without"))
-            na += a is not None; nb += b is not None
-            a, b = (HORIZON if x is None else x for x in (a, b))
-            d.append(b - a); a_all.append(a); b_all.append(b)
-        diffs.append(statistics.mean(d))
-    if len(diffs) > 1: print("| %d m2 | %d of %d | %d | %.1f | %.1f | %s |" % (target, na, len(a_all), nb, statistics.mean(a_all), statistics.mean(b_all), t_interval(diffs)))
-for t in (30, 60, 90, 120):
-    d = [statistics.mean([r["curves"]["with"][t] - r["curves"]["without"][t] for r in rows if r["cave"] == c]) for c in caves]
-    if len(d) > 1: print("new m2 after %d s: %.0f with, %.0f without, difference %s" % (t, statistics.mean(r["curves"]["with"][t] for r in rows), statistics.mean(r["curves"]["without"][t] for r in rows), t_interval(d)))
+
+
+def neighbourhood(cells):
+    near = (-1, 0, 1)
+    return {(x + i, y + j, z + k) for x, y, z in cells for i in near for j in near for k in near}
+
+
+def curves(run, old, turn, moved):
+    """New and known rock in m2, for each second from the take-off."""
+    c, s = math.cos(turn), math.sin(turn)
+    take_off_s = next(e['t'] for e in events(run, 'phase') if e['phase'] == 'takeoff')
+
+    def is_new(cell):
+        x, y, z = ((k + 0.5) * CELL_M - d for k, d in zip(cell, moved))
+        return tuple(math.floor(v / CELL_M) for v in (c * x + s * y, -s * x + c * y, z)) not in old
+
+    judged, new, known, out = {}, 0, 0, []
+    for x, y, z, t in changes(run):
+        while len(out) <= abs(t) / 1000 - take_off_s:
+            out.append((new * AREA_M2, known * AREA_M2))
+        cell = (x, y, z)
+        if cell not in judged:
+            judged[cell] = is_new(cell)
+        step = 1 if t > 0 else -1
+        known += step
+        new += step if judged[cell] else 0
+    while len(out) <= HORIZON_S:
+        out.append((new * AREA_M2, known * AREA_M2))
+    return [n for n, _ in out[:HORIZON_S + 1]], [k for _, k in out[:HORIZON_S + 1]]
+
+
+def time_to(curve, m2):
+    return next((float(t) for t, v in enumerate(curve) if v >= m2), None)
+
+
+def interval(values):
+    mean = statistics.mean(values)
+    if len(values) < 2:
+        return f'{mean:.1f}'
+    half = STUDENT[len(values) - 1] * statistics.stdev(values) / math.sqrt(len(values))
+    return f'{mean:.1f} ({mean - half:.1f} to {mean + half:.1f})'
+
+
+def print_place(run, cave, seed, start, turn, moved):
+    """How far the place that was found is off, by the truth of the turned cave."""
+    for e in events(run, 'earlier_map'):
+        if e['state'] != 'found':
+            print(f"place {cave} {seed}: attempt {e['attempt']} at {e['t']:.1f} s {e['state']}: {e['reason']}")
+            continue
+        x, y, z = (a - b for a, b in zip(start, moved))
+        x, y = math.cos(turn) * x + math.sin(turn) * y, -math.sin(turn) * x + math.cos(turn) * y
+        c, s = math.cos(e['heading']), math.sin(e['heading'])
+        found = [v + p for v, p in zip((c * x - s * y, s * x + c * y, z), e['position'])]
+        off = abs((e['heading'] - turn + math.pi) % (2 * math.pi) - math.pi)
+        print(f"place {cave} {seed}: attempt {e['attempt']} at {e['t']:.1f} s, off by {math.dist(found, start):.3f} m "
+              f"({math.dist(found[:2], start[:2]):.3f} level) and {math.degrees(off):.2f} deg; overlap "
+              f"{e['overlap']:.3f}, agreement {e['agreement']:.4f}, residual {e['residual']:.3f}, rival {e['rival']:.2f}")
+
+
+def pairs(folder, seeds):
+    for cave in range(101, 111):
+        turn, *moved = map(float, open(f'{folder}/turned{cave}.truth').read().split())
+        start = tuple(map(float, open(f'{folder}/turned{cave}.info').read().split('start "')[1].split()[:3]))
+        first = rock(f'{folder}/first_{cave}')
+        old = neighbourhood(first)
+        for seed in seeds:
+            runs = {arm: f'{folder}/{arm}_{cave}_{seed}' for arm in ARMS}
+            if not all(os.path.exists(run + '/metrics.json') for run in runs.values()):
+                continue
+            print_place(runs['with'], cave, seed, start, turn, moved)
+            yield {'cave': cave, 'seed': seed, 'first': len(first) * AREA_M2,
+                   'metrics': {arm: json.load(open(run + '/metrics.json')) for arm, run in runs.items()},
+                   'curves': {arm: curves(run, old, turn, moved) for arm, run in runs.items()}}
+
+
+def print_saved(name, rows, caves, which, target):
+    """Mean over caves of what is saved; a flight that does not reach a target counts as the horizon."""
+    times = {arm: [time_to(r['curves'][arm][which], target(r)) for r in rows] for arm in ARMS}
+    counted = {arm: [HORIZON_S if t is None else t for t in ts] for arm, ts in times.items()}
+    saved = [statistics.mean(b - a for r, a, b in zip(rows, counted['with'], counted['without']) if r['cave'] == c)
+             for c in caves]
+    reached = ' and '.join(str(sum(t is not None for t in times[arm])) for arm in ARMS)
+    print(f"| {name} | {reached} of {len(rows)} | {statistics.mean(counted['with']):.1f} s | "
+          f"{statistics.mean(counted['without']):.1f} s | {interval(saved)} |")
+
+
+def main():
+    folder, seeds = sys.argv[1], sys.argv[2:]
+    rows = list(pairs(folder, seeds))
+    for r in rows:
+        m = r['metrics']
+        new = {arm: ', '.join(f"{r['curves'][arm][0][t]:.0f}" for t in (30, 60, 90, 120)) for arm in ARMS}
+        print(f"| {r['cave']}, {r['seed']} | {r['first']:.0f} | {new['with']} | {new['without']} | "
+              f"{100 * m['with']['coverage']:.1f} / {100 * m['without']['coverage']:.1f} | "
+              f"{m['with']['min_clearance_m']:.2f} / {m['without']['min_clearance_m']:.2f} |"
+              f" contacts {m['with']['contacts']} {m['without']['contacts']}, "
+              f"{m['with']['outcome']} {m['without']['outcome']}")
+    caves = sorted({r['cave'] for r in rows})
+    for m2 in (50, 100, 250, 500):
+        print_saved(f'{m2} m² of new rock', rows, caves, 0, lambda r, m2=m2: m2)
+    for m2 in (0, 250, 500, 1000):
+        print_saved(f"as much as the first flight and {m2} m²", rows, caves, 1, lambda r, m2=m2: r['first'] + m2)
+    for t in (30, 60, 90, 120):
+        both = {arm: [r['curves'][arm][0][t] for r in rows] for arm in ARMS}
+        more = [statistics.mean(a - b for r, a, b in zip(rows, both['with'], both['without']) if r['cave'] == c)
+                for c in caves]
+        print(f"| new rock after {t} s | | {statistics.mean(both['with']):.0f} m² | "
+              f"{statistics.mean(both['without']):.0f} m² | {interval(more)} |")
+
+
+if __name__ == '__main__':
+    main()

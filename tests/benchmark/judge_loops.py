@@ -59,7 +59,7 @@ def main():
         if false or show_all:
             print(f"{replay} {row['older_s']} {row['newer_s']} {row['state']}: off by {off_m:.3f} m, {off_deg:.2f} deg; "
                   f"{math.dist(p_a, p_b):.1f} m apart, overlap {row['overlap']}, residual {row['residual_m']}, "
-                  f"correction {row['correction_m']}, {row['took_ms']} ms")
+                  f"correction {row['correction_m']}")
     print(f"{replay} {counts} worst closed {worst[0]:.3f} m {worst[1]:.2f} deg")
 
 

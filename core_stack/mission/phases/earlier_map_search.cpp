@@ -17,7 +17,9 @@ constexpr TimeNs kSearchBudget = 4 * kSecond;
 /// less.
 constexpr TimeNs kFirstPause = 5 * kSecond, kLongestPause = 40 * kSecond;
 /// Cells that are taken in by one job, so that no scan waits long for the map.
-constexpr std::size_t kCellsAtOnce = 50000;
+constexpr std::size_t kCellsAtOnce = 10000;
+/// The vehicle hovers no longer for its first answer: a computer may be late.
+constexpr TimeNs kFirstWait = 20 * kSecond;
 
 double free_volume_m3(const std::vector<CellValue>& cells, double resolution_m) {
   const auto free =
@@ -47,12 +49,18 @@ EarlierMapSearch::EarlierMapSearch(Onboard& onboard)
       pause_(kFirstPause) {}
 
 void EarlierMapSearch::step() {
-  if (running_ || (state_ != State::first && state_ != State::later)) return;
+  if (state_ != State::first && state_ != State::later) return;
   const TimeNs now = onboard_.now();
   if (begun_ == 0) begun_ = now;
+  if (state_ == State::first && now - begun_ > kFirstWait) go_on_without("the search took longer than 20 s");
+  if (running_ || state_ == State::over) return;
   if (state_ == State::later && now - begun_ > from_seconds(onboard_.options.earlier.search_time_s))
     return give_up();
   if (now >= next_) look();
+}
+
+void EarlierMapSearch::end() {
+  if (state_ != State::none) state_ = State::over;
 }
 
 void EarlierMapSearch::look() {
@@ -74,8 +82,9 @@ void EarlierMapSearch::locate(std::shared_ptr<const VoxelMap> seen) {
        options = onboard_.options.map] {
         found->registration = locate_in(*earlier, seen);
         if (!found->registration.trusted) return;
-        found->cells = moved_cells(*earlier, found->registration.T_target_source.inverse(), options);
-        found->free_m3 = free_volume_m3(found->cells, options.resolution_m);
+        found->cells = std::make_shared<const std::vector<CellValue>>(
+            moved_cells(*earlier, found->registration.T_target_source.inverse(), options));
+        found->free_m3 = free_volume_m3(*found->cells, options.resolution_m);
       },
       [this, found] { on_answer(*found); });
 }
@@ -83,31 +92,34 @@ void EarlierMapSearch::locate(std::shared_ptr<const VoxelMap> seen) {
 void EarlierMapSearch::on_answer(const Found& found) {
   const TimeNs now = onboard_.now();
   running_ = false;
+  if (state_ == State::over) return;
   if (found.registration.trusted) {
     event::EarlierMap e = event_of(event::EarlierMapState::found, attempts_, found.registration);
     e.free_m3 = found.free_m3;
     onboard_.recorder.write(now, e);
     state_ = State::takes_in;
-    return take_in(std::make_shared<const std::vector<CellValue>>(found.cells), 0);
+    return take_in(found.cells, 0);
   }
   onboard_.recorder.write(now, event_of(event::EarlierMapState::not_found, attempts_, found.registration));
-  last_reason_ = found.registration.reason;
+  go_on_without(found.registration.reason);
+}
+
+void EarlierMapSearch::go_on_without(const std::string& reason) {
+  last_reason_ = reason;
   if (onboard_.options.earlier.required) {
     refusal_ = "it cannot find its place in the earlier map: " + last_reason_;
     state_ = State::over;
     return;
   }
   state_ = State::later;
-  next_ = now + pause_;
+  next_ = onboard_.now() + pause_;
   pause_ = std::min(2 * pause_, kLongestPause);
 }
 
 /// In parts, one after another; exploration that waits goes on after the last one.
 void EarlierMapSearch::take_in(std::shared_ptr<const std::vector<CellValue>> cells, std::size_t begin) {
-  if (begin >= cells->size()) {
-    state_ = State::over;
-    return;
-  }
+  if (begin >= cells->size()) state_ = State::over;
+  if (state_ == State::over) return;
   const std::size_t count = std::min(kCellsAtOnce, cells->size() - begin);
   onboard_.map.job(
       "take earlier map in", kMappingBudget,

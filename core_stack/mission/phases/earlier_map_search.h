@@ -21,6 +21,8 @@ class EarlierMapSearch {
 
   /// Ten times a second from the first hover until the vehicle turns back.
   void step();
+  /// The vehicle turns back: what is found from now on is not taken in.
+  void end();
   /// Whether exploration waits for it: there is an earlier map, and the first answer is still to come, or the
   /// cells that it led to.
   bool undecided() const { return state_ == State::first || state_ == State::takes_in; }
@@ -32,13 +34,14 @@ class EarlierMapSearch {
   enum class State { none, first, later, takes_in, over };
   struct Found {
     MapRegistration registration;
-    std::vector<CellValue> cells;  // in the frame of the flight, if it is trusted
-    double free_m3 = 0;            // of these
+    std::shared_ptr<const std::vector<CellValue>> cells;  // in the frame of the flight, if it is trusted
+    double free_m3 = 0;                                   // of these
   };
   void look();
   void locate(std::shared_ptr<const VoxelMap> seen);
   void on_answer(const Found& found);
   void take_in(std::shared_ptr<const std::vector<CellValue>> cells, std::size_t begin);
+  void go_on_without(const std::string& reason);
   void give_up();
 
   Onboard& onboard_;

@@ -59,5 +59,19 @@ TEST(Token, IsWhatAUrlHoldsAsItIs) {
     EXPECT_FALSE(is_token(bad)) << bad;
 }
 
+TEST(LiveAccess, PagesOfOtherSitesAreNotFromHere) {
+  EXPECT_TRUE(is_from_here("127.0.0.1:8765", ""));
+  EXPECT_TRUE(is_from_here("localhost:8765", "http://localhost:8765"));
+  EXPECT_TRUE(is_from_here("[::1]:8765", "http://[::1]:8765"));
+  EXPECT_TRUE(is_from_here("127.0.0.1:8765", "https://app.foxglove.dev"));
+  EXPECT_TRUE(is_from_here("127.0.0.1:8765", "app://desktop"));
+  EXPECT_FALSE(is_from_here("127.0.0.1:8765", "https://evil.example"));
+  EXPECT_FALSE(is_from_here("127.0.0.1:8765", "https://127.0.0.1.evil.example"));
+  EXPECT_FALSE(is_from_here("evil.example:8765", "")) << "a name that was made to point here";
+  EXPECT_FALSE(is_from_here("127.0.0.1.evil.example:8765", ""));
+  EXPECT_FALSE(is_from_here("127.0.0.1:8765", "null"));
+  EXPECT_FALSE(is_from_here("", ""));
+}
+
 }  // namespace
 }  // namespace karst::live
