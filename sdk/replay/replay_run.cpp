@@ -323,12 +323,9 @@ ReplaySummary replay_recording(SensorStream& sensors, const ReplayOptions& optio
     search->finish();
     const core::LoopClosing& loops = search->loops();
     write_loops(run_dir / "loops.csv", loops, origin);
-    summary.loops = {loops.closed(),
-                     loops.closures().size() - loops.closed(),
-                     loops.submaps().size(),
-                     loops.bytes(),
-                     loops.path_m(),
-                     search->all_s(),
+    summary.loops = {loops.closed(),         loops.closures().size() - loops.closed(),
+                     loops.submaps().size(), loops.bytes(),
+                     loops.path_m(),         search->all_s(),
                      search->slowest_s()};
     if (loops.closed() > 0) {
       const core::TrackCorrection corrected = loops.correction();

@@ -28,7 +28,7 @@ struct LoopSummary {
   std::size_t closed = 0, unused = 0, submaps = 0, bytes = 0;
   double path_m = 0;
   double search_s = 0, slowest_s = 0;  // of wall clock: all, and after one scan
-  double largest_correction_m = 0;  // of a scan's position
+  double largest_correction_m = 0;     // of a scan's position
   bool mapped_again = false;
 };
 

@@ -258,8 +258,6 @@ flight::FlightRequest request_of(const FlyArguments& args, const flight::Mission
 }
 
 void check_live(const FlyArguments& args) {
-  if (args.live.asked && args.live.address.empty())
-    throw core::InputError("karst fly", "--live=", "expected --live=ADDRESS:PORT, or --live alone");
   if (args.live.asked && args.mission_file.find(':') != std::string::npos && !fs::exists(args.mission_file))
     throw core::InputError("karst fly", "--live " + args.mission_file,
                            "an address stands after an equals sign: --live=" + args.mission_file);

@@ -22,7 +22,7 @@ second() {  # ARM CAVE SEED
   local out=$runs/$1_$2_$3 map=()
   [ -f "$out/metrics.json" ] && return
   [ "$1" = with ] && map=(--set "map.start=$runs/first_$2")
-  "$karst" fly --cave "$runs/turned$2.info" --policy nearest_frontier --seed "$3" --time "160 s" --out "$out" \
+  "$karst" fly --cave "$runs/turned$2.info" --policy nearest_frontier --seed "$3" --time "240 s" --out "$out" \
     --force --no-report --quiet --threads 1 --cave-cache "$runs/cache" "${map[@]}" > "$out.log" 2>&1
 }
 wrong() {  # CAVE MAP NAME: it must not find its place

@@ -53,16 +53,17 @@ MapRegistration locate_in(const EarlierMap& earlier, std::shared_ptr<const Voxel
     nothing.reason = "no rock is seen";
     return nothing;
   }
-  MapRegistration found = register_maps(
-      earlier.piece, piece_of(std::move(seen)), options,
-      [&earlier](const MapPiece& source, const Pose& T, const std::vector<IcpRound>& rounds) {
-        return upright_icp(earlier.piece, source, T, rounds);
-      });
+  MapRegistration found =
+      register_maps(earlier.piece, piece_of(std::move(seen)), options,
+                    [&earlier](const MapPiece& source, const Pose& T, const std::vector<IcpRound>& rounds) {
+                      return upright_icp(earlier.piece, source, T, rounds);
+                    });
   // All of a small earlier map may lie on what is seen: that most of what is seen lies on it counts here.
   if (const double shared = found.overlay.source_overlap();
       found.trusted && shared < options.limits.min_overlap) {
     found.trusted = false;
-    found.reason = format_text("only %.0f %% of the rock that is seen lies on rock of the earlier map", 100 * shared);
+    found.reason =
+        format_text("only %.0f %% of the rock that is seen lies on rock of the earlier map", 100 * shared);
   }
   return found;
 }

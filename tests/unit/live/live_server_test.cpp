@@ -206,7 +206,8 @@ TEST_F(Live, ThePageIsServedAndNothingElse) {
   EXPECT_TRUE(page.starts_with("HTTP/1.1 200")) << page.substr(0, 100);
   EXPECT_NE(page.find("<canvas"), std::string::npos);
   EXPECT_NE(page.find("Content-Security-Policy"), std::string::npos);
-  EXPECT_TRUE(answer_to("GET /../../etc/passwd HTTP/1.1\r\nHost: 127.0.0.1:1\r\n\r\n").starts_with("HTTP/1.1 404"));
+  EXPECT_TRUE(
+      answer_to("GET /../../etc/passwd HTTP/1.1\r\nHost: 127.0.0.1:1\r\n\r\n").starts_with("HTTP/1.1 404"));
   EXPECT_TRUE(answer_to("DELETE / HTTP/1.1\r\nHost: 127.0.0.1:1\r\n\r\n").starts_with("HTTP/1.1 405"));
 }
 
@@ -238,12 +239,13 @@ TEST_F(Live, WithATokenNobodyGetsAnythingWithoutIt) {
   start(secret);
   for (const char* target : {"/", "/?token=", "/?token=long.enough-toke", "/?token=long.enough-tokeN"}) {
     EXPECT_THROW(Client(at(), target), beast::system_error) << target;
-    EXPECT_TRUE(
-        answer_to("GET " + std::string(target) + " HTTP/1.1\r\nHost: 127.0.0.1:1\r\n\r\n").starts_with("HTTP/1.1 401"));
+    EXPECT_TRUE(answer_to("GET " + std::string(target) + " HTTP/1.1\r\nHost: 127.0.0.1:1\r\n\r\n")
+                    .starts_with("HTTP/1.1 401"));
   }
   EXPECT_EQ(Client(at(), "/?token=long.enough-token").read_text()["op"], "serverInfo");
-  EXPECT_TRUE(answer_to("GET / HTTP/1.1\r\nHost: 127.0.0.1:1\r\nAuthorization: Bearer long.enough-token\r\n\r\n")
-                  .starts_with("HTTP/1.1 200"));
+  EXPECT_TRUE(
+      answer_to("GET / HTTP/1.1\r\nHost: 127.0.0.1:1\r\nAuthorization: Bearer long.enough-token\r\n\r\n")
+          .starts_with("HTTP/1.1 200"));
 }
 
 TEST_F(Live, GarbageHugeHeadersAndEndlessHandshakesAreClosed) {
