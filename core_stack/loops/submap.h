@@ -15,7 +15,7 @@
 namespace karst::core {
 
 struct SubmapOptions {
-  double length_m = 4;          // of the path in one submap
+  double length_m = 2;          // of the path in one submap
   double keyframe_m = 0.4;      // between sweeps that are added
   double range_m = 20;          // of the points, from the sensor
   double voxel_m = 0.2;         // one point is kept in each

@@ -15,7 +15,7 @@ SubmapBuilder::Seen seen(TimeNs stamp, const Pose& pose, const std::vector<Vec3f
 }
 
 TEST(Submap, IsCutAtItsLengthAndChainsWithTheNext) {
-  SubmapBuilder builder({});
+  SubmapBuilder builder({.length_m = 4});
   const std::vector<Vec3f> points{{1, 2, 3}};
   std::vector<Submap> all;
   for (int i = 0; i <= 100; ++i)
