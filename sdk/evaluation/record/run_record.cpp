@@ -161,14 +161,17 @@ RunRecord read_run(const fs::path& run_dir) {
   run.truth_objects = read_events(run_dir / "truth_objects.jsonl", "time_s", "event", problems);
   run.estimate = read_tum(run_dir / "trajectory.tum", problems);
   run.truth = read_tum(run_dir / "ground_truth.tum", problems);
+  if (fs::exists(run_dir / "trajectory_odometry.tum"))
+    run.odometry = read_tum(run_dir / "trajectory_odometry.tum", problems);
   // A replay keeps its recording's own time base there; all other files count from the recording's begin.
   const double origin_s = run.number("replay.time_origin").value_or(0);
-  for (auto* poses : {&run.estimate, &run.truth})
+  for (auto* poses : {&run.estimate, &run.truth, &run.odometry})
     for (StampedPose& p : *poses) p.t_s -= origin_s;
   run.telemetry = read_table(run_dir / "telemetry.csv", {"phase"}, problems);
   run.truth_table = read_table(run_dir / "truth.csv", {}, problems);
   run.decisions = read_table(run_dir / "decisions.csv", {}, problems);
   run.unsurveyed = read_table(run_dir / "unsurveyed.csv", {}, problems);
+  run.loops = read_table(run_dir / "loops.csv", {"state"}, problems);
   run.growth = read_map_growth(run_dir / "map_growth.bin", problems);
   run.timing = read_json(run_dir / "timing.json", problems);
   run.evaluation = read_json(run_dir / "evaluation.json", problems);

@@ -40,6 +40,8 @@ struct RunRecord {
   std::vector<nlohmann::json> truth_events;  // the simulator's: each an object with "time_s" and "event"
   std::vector<nlohmann::json> truth_objects;  // likewise, of objects of interest
   std::vector<StampedPose> estimate, truth;
+  std::vector<StampedPose> odometry;  // the estimate before loops were closed; empty if none were
+  Table loops;                        // closures of a replay (docs/loops.md); empty without one
   Table telemetry, truth_table, decisions;
   Table unsurveyed;  // what a survey lacks; empty without one
   std::vector<OccupiedSpan> growth;

@@ -92,6 +92,8 @@ ordered_json report_data(const RunRecord& run, const ordered_json& metrics) {
   d["cloud"] = scene_cloud(run, duration_s, problems);
   d["track"] = scene_track(run.estimate.empty() ? run.truth : run.estimate);
   d["true_track"] = run.estimate.empty() ? ordered_json(nullptr) : scene_track(run.truth);
+  d["odometry_track"] = scene_track(run.odometry);
+  d["loops"] = scene_loops(run);
   d["frontiers"] = scene_frontiers(run, problems);
   d["plans"] = scene_plans(run, problems);
   d["objects"] = scene_objects(run);

@@ -7,6 +7,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/rounded.h"
+#include "core_stack/loops/loop_closing.h"
 #include "core_stack/mapping/region/region_keys.h"
 #include "sdk/evaluation/page/base64.h"
 #include "sdk/evaluation/report/cloud.h"
@@ -192,6 +193,24 @@ ordered_json scene_region(const RunRecord& run, std::vector<std::string>& proble
     problems.emplace_back(e.what());
     return nullptr;
   }
+}
+
+ordered_json scene_loops(const RunRecord& run) {
+  const auto state = run.loops.text.find("state");
+  if (run.loops.rows == 0 || state == run.loops.text.end()) return nullptr;
+  const auto place = [&](const char* visit, std::size_t row) {
+    core::Vec3 p = core::Vec3::Constant(std::nan(""));
+    for (int axis = 0; axis < 3; ++axis)
+      if (const auto* column = run.loops.column(std::string(visit) + '_' + "xyz"[axis])) p[axis] = (*column)[row];
+    return p;
+  };
+  ordered_json all = ordered_json::array();
+  for (std::size_t row = 0; row < run.loops.rows; ++row) {
+    const core::Vec3 older = place("older", row), newer = place("newer", row);
+    if (!older.allFinite() || !newer.allFinite()) continue;
+    all.push_back({rounded(older), rounded(newer), state->second[row] == core::name_of(core::ClosureState::closed)});
+  }
+  return all;
 }
 
 ordered_json scene_objects(const RunRecord& run) {

@@ -33,6 +33,9 @@ nlohmann::ordered_json scene_plans(const RunRecord& run, std::vector<std::string
 /// The bodies of the region that the vehicle may fly in: [{keep: "in" or "out", outline: [[x, y], ...], low,
 /// high}, ...]; an open height ends with the map. null without a region.
 nlohmann::ordered_json scene_region(const RunRecord& run, std::vector<std::string>& problems);
+/// Closures of loops: [[from, to, used], ...], two places that are one in metres, and whether the trajectory
+/// was corrected by it; null if there are none.
+nlohmann::ordered_json scene_loops(const RunRecord& run);
 /// Objects of interest found by each time: [[t, [[x, y, z, what], ...]], ...], one entry per change.
 nlohmann::ordered_json scene_objects(const RunRecord& run);
 /// The policy's drawings by decision: [[t, [{shape, points, rgb, text}, ...]], ...].

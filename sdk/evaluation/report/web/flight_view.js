@@ -47,7 +47,7 @@ function regionEdges(bodies) {
 /** { object, layer: {name: object}, choices: names of layers to be shown or hidden, setTime(t), setResolution(w, h), labels, vehicles } of a run with phases, goals,
  *  plans, frontiers, choices, drawings, and tracks or null. `scores` is what showScoreScale() shows. */
 function makeFlight(run) {
-  const track = decodeTrack(run.track), truth = decodeTrack(run.true_track);
+  const track = decodeTrack(run.track), truth = decodeTrack(run.true_track), odometry = decodeTrack(run.odometry_track);
   const object = new THREE.Group(), lines = [];
   const layer = {};
   const add = (name, child, order) => {
@@ -67,6 +67,14 @@ function makeFlight(run) {
   }
   let trueLine = null;
   if (truth && truth.count > 1) trueLine = addLine("true path", thickLine(truth.xyz, 1.5, colours.truth), 3);
+  if (odometry && odometry.count > 1) addLine("path before loops", thickLine(odometry.xyz, 1.5, colours.odometry), 3);
+  if (run.loops) {
+    const mark = (name, colour, closures) => {
+      if (closures.length) setMarks(add(name, roundMarks(colour), 6), [].concat(...closures.map((c) => c[1])), closures.map(() => 10));
+    };
+    mark("loops closed", colours.loop, run.loops.filter((c) => c[2]));
+    mark("closures not used", colours.object, run.loops.filter((c) => !c[2]));
+  }
   if (run.region) {
     const edges = new THREE.BufferGeometry();
     edges.setAttribute("position", new THREE.Float32BufferAttribute(regionEdges(run.region), 3));
@@ -83,7 +91,7 @@ function makeFlight(run) {
   let shownPlan, shownFrontiers, shownObjects, shownDrawings, drawingLabels = [], clusterPlaces = [], resolution = [1, 1];
   const used = { plan: run.plans.length, goal: run.goals.length, frontiers: run.frontiers.length, objects: run.objects.length,
                  drawings: run.drawings.some((d) => d[1].length) };
-  const choices = ["path", "true path", "region", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
+  const choices = ["path", "path before loops", "loops closed", "closures not used", "true path", "region", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
   const view = { object, layer, choices, labels: [], avoid: [], scores: null, vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
   const withResolution = (line) => { line.material.resolution.set(...resolution); return line; };
 

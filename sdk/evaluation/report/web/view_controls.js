@@ -17,7 +17,8 @@ function showScale(cloud, step, mode) {
 }
 
 const layerMarks = {
-  "map": ["", ""], "path": [colours.explore, ""], "true path": [colours.truth, ""], "region": [colours.region, ""], "plan": [colours.plan, ""],
+  "map": ["", ""], "path": [colours.explore, ""], "true path": [colours.truth, ""],
+  "path before loops": [colours.odometry, ""], "loops closed": [colours.loop, "dot"], "closures not used": [colours.object, "dot"], "region": [colours.region, ""], "plan": [colours.plan, ""],
   "goal": [colours.goal, "ring"], "frontiers": [colours.frontier, "dot"], "drawings": ["", ""], "grid": ["", ""],
   "paths": ["", ""], "links": ["#009e73", ""], "relays": [colours.goal, "ring"], "reach": [colours.home, "dot"],
   "homing tree": [colours.truth, ""], "objects": [colours.object, "dot"], "objects known at the base": [colours.home, "dot"],

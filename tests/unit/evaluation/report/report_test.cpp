@@ -95,6 +95,22 @@ TEST(Report, ShowsTheRegionAndSaysThatItsCoverageIsOfIt) {
   EXPECT_EQ(bodies[1]["high"], 1.5);
 }
 
+TEST(Report, ShowsTheLoopsOfAReplayAndThePathBefore) {
+  TemporaryDirectory dir;
+  test::write_fake_run(dir.path());
+  write_report(dir.path());
+  json d = data_of(bytes_of(dir.path() / "report.html"));
+  EXPECT_TRUE(d["loops"].is_null() && d["odometry_track"].is_null());
+  fs::copy_file(dir.path() / "trajectory.tum", dir.path() / "trajectory_odometry.tum");
+  std::ofstream(dir.path() / "loops.csv")
+      << "older_s,newer_s,state,older_x,older_y,older_z,newer_x,newer_y,newer_z\n"
+      << "1,40,closed,1,2,3,1.5,2,3\n2,50,alone,4,5,6,4,5,7\n3,60,closed,nan,5,6,4,5,7\n";
+  write_report(dir.path());
+  d = data_of(bytes_of(dir.path() / "report.html"));
+  EXPECT_EQ(d["loops"], json::parse("[[[1,2,3],[1.5,2,3],true],[[4,5,6],[4,5,7],false]]"));
+  EXPECT_EQ(d["odometry_track"], d["track"]);
+}
+
 TEST(Report, HoldsTheDrawingsThatItIsGivenAndTheirNote) {
   TemporaryDirectory dir;
   test::write_fake_run(dir.path());
