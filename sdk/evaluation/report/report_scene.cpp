@@ -201,14 +201,16 @@ ordered_json scene_loops(const RunRecord& run) {
   const auto place = [&](const char* visit, std::size_t row) {
     core::Vec3 p = core::Vec3::Constant(std::nan(""));
     for (int axis = 0; axis < 3; ++axis)
-      if (const auto* column = run.loops.column(std::string(visit) + '_' + "xyz"[axis])) p[axis] = (*column)[row];
+      if (const auto* column = run.loops.column(std::string(visit) + '_' + "xyz"[axis]))
+        p[axis] = (*column)[row];
     return p;
   };
   ordered_json all = ordered_json::array();
   for (std::size_t row = 0; row < run.loops.rows; ++row) {
     const core::Vec3 older = place("older", row), newer = place("newer", row);
     if (!older.allFinite() || !newer.allFinite()) continue;
-    all.push_back({rounded(older), rounded(newer), state->second[row] == core::name_of(core::ClosureState::closed)});
+    all.push_back(
+        {rounded(older), rounded(newer), state->second[row] == core::name_of(core::ClosureState::closed)});
   }
   return all;
 }
