@@ -237,7 +237,8 @@ flight::Mission mission_of(const FlyArguments& args, const PolicyChooser& choose
   flight::check(mission.faults, mission.core.team.robots, mission.file);
   core::check(mission.core.team, mission.core.homing, mission.file);
   if (!mission.cave.empty())
-    for (const std::string& note : flight::check_cave(mission.cave, mission.start, mission.mesh))
+    for (const std::string& note :
+         flight::check_cave(mission.cave, mission.start, mission.mesh, args.cave_cache))
       if (!args.quiet) print_error("note: %s: %s\n", mission.cave.c_str(), note.c_str());
   return mission;
 }

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <unordered_map>
 #include <utility>
 
 #include "core_stack/common/error.h"
@@ -52,24 +51,44 @@ class JoinedVertices {
   explicit JoinedVertices(std::vector<Vec3f>& vertices) : vertices_(vertices) {}
   std::uint32_t index(const Vec3f& v) {
     const Vec3f plain = v.array() + 0.0f;  // no negative zero
-    std::array<std::uint32_t, 3> bits{};
-    std::memcpy(bits.data(), plain.data(), sizeof bits);
-    const auto [entry, is_new] = index_.try_emplace(bits, static_cast<std::uint32_t>(vertices_.size()));
-    if (is_new) vertices_.push_back(plain);
-    return entry->second;
+    for (std::size_t i = slot_of(plain);; i = (i + 1) & (slots_.size() - 1)) {
+      if (slots_[i] == kFree) {
+        slots_[i] = static_cast<std::uint32_t>(vertices_.size());
+        vertices_.push_back(plain);
+        if (2 * vertices_.size() > slots_.size()) grow();
+        return static_cast<std::uint32_t>(vertices_.size() - 1);
+      }
+      if (bits_of(vertices_[slots_[i]]) == bits_of(plain)) return slots_[i];
+    }
   }
 
  private:
-  struct Hash {
-    std::size_t operator()(const std::array<std::uint32_t, 3>& b) const {
-      std::uint64_t h = b[0];
-      h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull + b[1];
-      h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9ull + b[2];
-      return (h ^ (h >> 30)) * 0x94d049bb133111ebull >> 3;
+  using Bits = std::array<std::uint32_t, 3>;
+  static constexpr std::uint32_t kFree = ~std::uint32_t{0};
+
+  static Bits bits_of(const Vec3f& v) {
+    Bits bits;
+    std::memcpy(bits.data(), v.data(), sizeof bits);
+    return bits;
+  }
+  std::size_t slot_of(const Vec3f& v) const {
+    const Bits b = bits_of(v);
+    std::uint64_t h = b[0];
+    h = (h ^ (h >> 29)) * 0x9e3779b97f4a7c15ull + b[1];
+    h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9ull + b[2];
+    return ((h ^ (h >> 30)) * 0x94d049bb133111ebull >> 24) & (slots_.size() - 1);
+  }
+  void grow() {
+    slots_.assign(2 * slots_.size(), kFree);
+    for (std::uint32_t n = 0; n < vertices_.size(); ++n) {
+      std::size_t i = slot_of(vertices_[n]);
+      while (slots_[i] != kFree) i = (i + 1) & (slots_.size() - 1);
+      slots_[i] = n;
     }
-  };
+  }
+
   std::vector<Vec3f>& vertices_;
-  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, Hash> index_;  // never iterated
+  std::vector<std::uint32_t> slots_ = std::vector<std::uint32_t>(1024, kFree);  // a power of two, half full
 };
 
 /// A part of the file, and how its vertices become places in metres.

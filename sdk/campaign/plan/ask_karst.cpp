@@ -95,13 +95,15 @@ InputError complaint(const Campaign& c, const ContestantSpec& who, const CaveSpe
 
 }  // namespace
 
-pt::ptree resolve(const Campaign& c, const ContestantSpec& who, const CaveSpec& cave, const fs::path& karst) {
+pt::ptree resolve(const Campaign& c, const ContestantSpec& who, const CaveSpec& cave, const fs::path& karst,
+                  const fs::path& cave_cache) {
   const ScratchFile resolved;
   std::vector<std::string> argv = {karst.string(), "fly"};
   if (!c.mission.empty()) argv.push_back(c.mission);
   argv.insert(argv.end(), {"--check", resolved.path, "--policy", who.policy, "--cave", cave.file});
   if (!cave.start.empty()) argv.insert(argv.end(), {"--start", cave.start});
   if (!who.plugin.empty()) argv.insert(argv.end(), {"--plugin", who.plugin});
+  if (!cave_cache.empty()) argv.insert(argv.end(), {"--cave-cache", cave_cache.string()});
   const auto set = [&argv](const std::string& key, const std::string& value) {
     argv.insert(argv.end(), {"--set", key + "=" + value});
   };

@@ -10,9 +10,10 @@
 namespace karst::campaign {
 
 /// The mission of a contestant in a cave as `karst fly` would fly it. Throws core::InputError with karst's
-/// message.
+/// message. `cave_cache`: the folder of --cave-cache; "": none.
 boost::property_tree::ptree resolve(const Campaign& campaign, const ContestantSpec& who, const CaveSpec& cave,
-                                    const std::filesystem::path& karst);
+                                    const std::filesystem::path& karst,
+                                    const std::filesystem::path& cave_cache = {});
 
 /// The file that provides a policy, or "".
 std::string plugin_file(const std::string& policy, const std::string& plugin,

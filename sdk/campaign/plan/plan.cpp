@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_lines.h"
@@ -83,14 +86,37 @@ PlannedCave planned(const CaveSpec& cave, const std::string& source) {
   }
 }
 
+/// Calls f(0) to f(n - 1), which wait for processes, as many at once as there are cores. Throws what the
+/// first of them in this order throws.
+template <class F>
+void at_once(std::size_t n, const F& f) {
+  std::vector<std::exception_ptr> errors(n);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < n; i = next++) try {
+        f(i);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t k = 1; k < std::min<std::size_t>(n, std::thread::hardware_concurrency()); ++k)
+      others.emplace_back(work);
+    work();
+  }
+  for (const std::exception_ptr& e : errors)
+    if (e) std::rethrow_exception(e);
+}
+
 /// A contestant is one policy: `auto` must choose the same one in every cave.
 void refuse_other_choice(const Campaign& c, const ContestantSpec& who, const PlannedContestant& first,
-                         const fs::path& karst) {
+                         const fs::path& karst, const fs::path& cave_cache) {
   const auto chosen = [](const pt::ptree& mission) {
     return std::pair(mission.get("policy.name", ""), mission.get_child("policy.parameters", {}));
   };
   for (std::size_t i = 1; i < c.caves.size(); ++i)
-    if (chosen(resolve(c, who, c.caves[i], karst)) != chosen(first.mission))
+    if (chosen(resolve(c, who, c.caves[i], karst, cave_cache)) != chosen(first.mission))
       throw InputError(c.source, "contestant " + who.name,
                        "auto chooses otherwise in cave " + c.caves[i].name + " than in " + c.caves[0].name +
                            "; make a campaign of each, or name what is chosen as contestants");
@@ -141,7 +167,7 @@ void refuse_figure_of_others(const std::string& metric, const std::vector<Planne
   }
 }
 
-Plan make_plan(const Campaign& c, const fs::path& karst) {
+Plan make_plan(const Campaign& c, const fs::path& karst, const fs::path& cave_cache) {
   Plan plan;
   plan.name = c.name;
   plan.profile = c.profile;
@@ -149,12 +175,21 @@ Plan make_plan(const Campaign& c, const fs::path& karst) {
   plan.seeds = c.seeds;
   plan.metric = c.metric;
   for (const CaveSpec& cave : c.caves) plan.caves.push_back(planned(cave, c.source));
-  for (const ContestantSpec& who : c.contestants) {
-    plan.contestants.push_back(planned(who, resolve(c, who, c.caves.front(), karst), karst));
-    if (plan.contestants.back().policy != who.policy)
-      refuse_other_choice(c, who, plan.contestants.back(), karst);
-  }
-  for (std::size_t i = 1; i < c.caves.size(); ++i) resolve(c, c.contestants.front(), c.caves[i], karst);
+  // First every cave once: what is found out about it is kept for the contestants after that.
+  std::vector<pt::ptree> in_first(c.contestants.size());
+  at_once(c.caves.size(), [&](std::size_t i) {
+    pt::ptree mission = resolve(c, c.contestants.front(), c.caves[i], karst, cave_cache);
+    if (i == 0) in_first.front().swap(mission);
+  });
+  at_once(c.contestants.size() - 1, [&](std::size_t i) {
+    in_first[i + 1] = resolve(c, c.contestants[i + 1], c.caves.front(), karst, cave_cache);
+  });
+  plan.contestants.resize(c.contestants.size());
+  at_once(c.contestants.size(),
+          [&](std::size_t i) { plan.contestants[i] = planned(c.contestants[i], in_first[i], karst); });
+  for (std::size_t i = 0; i < c.contestants.size(); ++i)
+    if (plan.contestants[i].policy != c.contestants[i].policy)
+      refuse_other_choice(c, c.contestants[i], plan.contestants[i], karst, cave_cache);
   plan.horizon_s = horizon_of(plan.contestants, c.source);
   refuse_figure_of_others(plan.metric, plan.contestants, c.source);
   return plan;

@@ -37,8 +37,9 @@ struct Plan {
 
 /// Asks the `karst` program whether each contestant can fly in the first cave, and the first contestant in
 /// every other cave, and with which settings. Throws core::InputError with the contestant or cave and the
-/// reason.
-Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst);
+/// reason. `cave_cache`: the folder in which trials keep what they work out of a cave; "": none.
+Plan make_plan(const Campaign& campaign, const std::filesystem::path& karst,
+               const std::filesystem::path& cave_cache = {});
 
 /// The longest time all of them may explore: the flight time or the battery's endurance. Throws
 /// core::InputError naming `source` if the times differ, because figures would not be comparable.

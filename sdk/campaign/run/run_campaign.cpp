@@ -36,8 +36,20 @@ std::vector<fs::path> run_dirs_in(const fs::path& run_dir) {
   return all;
 }
 
+fs::path cave_cache_of(const RunOptions& options) { return options.folder / "caves"; }
+
 Plan plan_for(const std::optional<Campaign>& campaign, const RunOptions& options) {
-  if (campaign) return make_plan(*campaign, options.karst);
+  if (campaign) {
+    const bool was_there = fs::exists(options.folder);
+    try {
+      return make_plan(*campaign, options.karst, cave_cache_of(options));
+    } catch (...) {
+      std::error_code ignored;
+      if (!was_there)
+        fs::remove_all(options.folder, ignored);  // it holds what was found out about caves only
+      throw;
+    }
+  }
   const fs::path file = options.folder / "campaign.sqlite";
   return with_present_files(plan_of(Store::open(file).head().definition, file.string()), options.karst);
 }
@@ -59,7 +71,7 @@ TrialJob job_of(const Plan& plan, const TrialKey& trial, const RunOptions& optio
   const auto& [contestant, cave, seed] = trial;
   TrialJob job{{options.karst.string(), "fly", (options.folder / mission_file(plan, trial)).string(),
                 "--seed", std::to_string(seed), "--threads", "1", "--quiet", "--no-report", "--cave-cache",
-                (options.folder / "caves").string()},
+                cave_cache_of(options).string()},
                options.folder / run_dir_of(plan, trial),
                identity_of(plan, trial)};
   if (const std::string& plugin = plan.contestants.at(contestant).plugin; !plugin.empty())

@@ -1,7 +1,5 @@
 #include "sdk/evaluation/reachable/reachable_file.h"
 
-#include <unistd.h>
-
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -11,7 +9,7 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
-#include "sdk/evaluation/record/whole_file.h"
+#include "sdk/evaluation/reachable/cache_file.h"
 
 namespace karst::evaluation {
 namespace {
@@ -32,23 +30,12 @@ struct Head {
   std::array<std::int32_t, 6> bounds;  // lowest and highest cell
 };
 
-/// FNV-1a over words of eight bytes, because meshes are large.
-std::uint64_t sum_of(std::span<const std::byte> bytes, std::uint64_t hash = 14695981039346656037ull) {
-  for (std::size_t i = 0; i < bytes.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
-    hash = (hash ^ word) * 1099511628211ull;
-    hash ^= hash >> 32;
-  }
-  return hash;
-}
-
 std::uint64_t key_of(const cave::TriangleMesh& mesh, const core::Vec3& start, const ReachableOptions& o) {
   const std::array<double, 6> numbers{start.x(),      start.y(),     start.z(),
                                       o.resolution_m, o.clearance_m, o.sight_m};
-  std::uint64_t hash = sum_of(std::as_bytes(std::span(numbers)), kVersion);
-  hash = sum_of(std::as_bytes(std::span(mesh.vertices)), hash);
-  return sum_of(std::as_bytes(std::span(mesh.triangles)), hash);
+  std::uint64_t hash = word_sum(std::as_bytes(std::span(numbers)), kVersion);
+  hash = word_sum(std::as_bytes(std::span(mesh.vertices)), hash);
+  return word_sum(std::as_bytes(std::span(mesh.triangles)), hash);
 }
 
 template <class T>
@@ -57,7 +44,7 @@ void append(Bytes& out, const T& value) {
 }
 
 std::uint64_t sum_of(const Bytes& bytes, std::size_t size) {
-  return sum_of(std::as_bytes(std::span(bytes.data(), size)));
+  return word_sum(std::as_bytes(std::span(bytes.data(), size)));
 }
 
 Bytes bytes_of(const Reachable& r, std::uint64_t key) {
@@ -126,15 +113,7 @@ Reachable find_reachable_once(const cave::TriangleMesh& mesh, const core::Vec3& 
   const fs::path file = folder / text.data();
   if (auto known = read(file, key, options)) return std::move(*known);
   Reachable found = find_reachable(mesh, start, options, name);
-  std::error_code ignored;
-  fs::create_directories(folder, ignored);
-  const fs::path own = file.string() + "." + std::to_string(getpid());  // other processes may write it, too
-  try {
-    write_whole_file(own, bytes_of(found, key));
-    fs::rename(own, file, ignored);
-    fs::remove(own, ignored);          // it still exists if renaming failed
-  } catch (const core::InputError&) {  // a full disk: the next flight computes it again
-  }
+  write_cache_file(file, bytes_of(found, key));
   return found;
 }
 

@@ -112,5 +112,52 @@ TEST(CaveCheck, KeysBesideACaveFileAreRefused) {
   EXPECT_TRUE(contains(refusal_of(info, "", {1, core::MeshUnit::mm, core::UpAxis::z, ""}), "is a cave file"));
 }
 
+/// An empty folder of this test's own.
+std::filesystem::path empty_folder(const std::string& name) {
+  std::filesystem::remove_all(own_file(name));
+  return own_file(name);
+}
+
+TEST(CaveCheck, AGoodCaveIsNotedOnceWithItsNotes) {
+  const std::filesystem::path cache = empty_folder("cache");
+  const std::string cave =
+      written_rooms("y_up.ply", [](const core::Vec3f& v) { return core::Vec3f(v.x(), v.z(), -v.y()); });
+  const std::vector<std::string> notes = check_cave(cave, "3 1.5 -3");
+  ASSERT_EQ(notes.size(), 1u);
+  for (int time = 0; time < 2; ++time) EXPECT_EQ(check_cave(cave, "3 1.5 -3", {}, cache), notes);
+  ASSERT_EQ(std::distance(std::filesystem::directory_iterator(cache), {}), 1);
+  // What it says is what is noted: it was not looked at again.
+  const std::string noted = std::filesystem::directory_iterator(cache)->path().string();
+  std::ofstream(noted) << "another note\ncan be flown\n";
+  EXPECT_EQ(check_cave(cave, "3 1.5 -3", {}, cache), std::vector<std::string>{"another note"});
+  // A file that was cut off says nothing.
+  std::ofstream(noted) << "another note\ncan be";
+  EXPECT_EQ(check_cave(cave, "3 1.5 -3", {}, cache), notes);
+}
+
+TEST(CaveCheck, WhatIsOtherThanNotedIsLookedAt) {
+  const std::filesystem::path cache = empty_folder("cache");
+  const std::string mesh = written_rooms("rooms.ply"), info = own_file("rooms.info");
+  std::ofstream(info) << "mesh rooms.ply\nstart \"3 3 1\"\n";
+  EXPECT_TRUE(check_cave(info, "", {}, cache).empty());
+  const auto refused = [&](const std::string& start) {
+    try {
+      check_cave(info, start, {}, cache);
+      return false;
+    } catch (const core::InputError&) {
+      return true;
+    }
+  };
+  EXPECT_FALSE(refused(""));
+  EXPECT_TRUE(refused("10 1 1")) << "a start in rock";
+  EXPECT_TRUE(refused("10 1 1")) << "what is refused is not noted";
+  written_rooms("rooms.ply", [](const core::Vec3f& v) -> core::Vec3f { return 1000.0f * v; });
+  EXPECT_TRUE(refused("")) << "another mesh";
+  written_rooms("rooms.ply");
+  EXPECT_FALSE(refused(""));
+  std::ofstream(info) << "mesh rooms.ply\nstart \"3 3 1\"\nunit mm\n";
+  EXPECT_TRUE(refused("")) << "another frame";
+}
+
 }  // namespace
 }  // namespace karst::flight
