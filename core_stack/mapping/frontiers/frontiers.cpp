@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
 #include "core_stack/mapping/occupancy/packed_cell.h"
 #include "core_stack/mapping/occupancy/voxel_reader.h"
@@ -27,7 +29,9 @@ bool explorable(const VoxelMap& map, const CellKey& k) {
 /// The cells around a cell, with one reader per direction: between neighbouring cells it stays in its block.
 class FaceReaders {
  public:
-  explicit FaceReaders(const VoxelMap& map) : map_(map), readers_(kFaces.size(), VoxelReader(map)) {}
+  explicit FaceReaders(const VoxelMap& map)
+      : map_(map), readers_{VoxelReader(map), VoxelReader(map), VoxelReader(map),
+                            VoxelReader(map), VoxelReader(map), VoxelReader(map)} {}
   bool unknown(const CellKey& k, std::size_t face) {
     return readers_[face].at(k + kFaces[face]) == Cell::unknown && explorable(map_, k + kFaces[face]);
   }
@@ -39,8 +43,30 @@ class FaceReaders {
 
  private:
   const VoxelMap& map_;
-  std::vector<VoxelReader> readers_;
+  std::array<VoxelReader, kFaces.size()> readers_;
 };
+
+/// The changed cells, and the neighbours of those that are no longer unknown: sorted, each once. Sorted cells
+/// stay so if all are shifted by one face: lists are merged, which takes less than sorting them all.
+std::vector<PackedCell> cells_concerned(std::span<const CellChange> changes) {
+  std::vector<PackedCell> cells, became_known, shifted, merged;
+  for (const CellChange& c : changes) {
+    cells.push_back(pack(c.key));
+    if (c.before == Cell::unknown) became_known.push_back(cells.back());
+  }
+  for (auto* list : {&cells, &became_known})
+    if (!std::is_sorted(list->begin(), list->end())) std::sort(list->begin(), list->end());
+  for (const CellKey& f : kFaces) {
+    const PackedCell step = pack(f) - pack({});
+    shifted.clear();
+    for (const PackedCell p : became_known) shifted.push_back(p + step);
+    merged.clear();
+    std::set_union(cells.begin(), cells.end(), shifted.begin(), shifted.end(), std::back_inserter(merged));
+    cells.swap(merged);
+  }
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
 
 /// Number of cells in both of two sorted lists.
 std::size_t shared(const std::vector<CellKey>& a, const std::vector<CellKey>& b) {
@@ -128,30 +154,26 @@ void Frontiers::update(const VoxelMap& map, std::span<const CellChange> changes)
 /// Updates the frontier bits; returns the tiles that must be clustered again, sorted. These include the tiles
 /// of cells that remain frontier but see less of the unknown than before.
 std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<const CellChange> changes) {
-  // Only a cell that is no longer unknown affects its neighbours.
-  std::vector<PackedCell> candidates;
-  candidates.reserve(7 * changes.size());
-  for (const CellChange& c : changes) {
-    candidates.push_back(pack(c.key));
-    if (c.before != Cell::unknown) continue;
-    for (const CellKey& f : kFaces) candidates.push_back(pack(c.key + f));
-  }
-  sort_unique(candidates);
-
   std::vector<CellKey> dirty;
   VoxelReader reader(map);
   FaceReaders faces(map);
-  for (const PackedCell candidate : candidates) {
-    const CellKey k = unpack(candidate);
-    const bool now = reader.at(k) == Cell::free && faces.any_unknown(k) && explorable(map, k);
-    const bool before = is_frontier(k);
+  std::optional<CellKey> at;
+  Tile* tile = nullptr;  // that of `at`; null: there is none
+  for (const PackedCell candidate : cells_concerned(changes)) {
+    const CellKey k = unpack(candidate), t = tile_of(k);
+    if (at != t) {
+      at = t;
+      const auto found = tiles_.find(t);
+      tile = found == tiles_.end() ? nullptr : &found->second;
+    }
+    const bool now = reader.at(candidate) == Cell::free && faces.any_unknown(k) && explorable(map, k);
+    const bool before = tile != nullptr && (tile->rows[row_of(k, t)] & bit_of(k, t)) != 0;
     if (!now && !before) continue;
-    const CellKey t = tile_of(k);
     if (dirty.empty() || dirty.back() != t) dirty.push_back(t);
     if (now == before) continue;
-    Tile& tile = tiles_[t];
-    if (tile.rows.empty()) tile.rows.resize(static_cast<std::size_t>(edge_) * edge_);
-    tile.rows[row_of(k, t)] ^= bit_of(k, t);
+    if (tile == nullptr) tile = &tiles_[t];
+    if (tile->rows.empty()) tile->rows.resize(static_cast<std::size_t>(edge_) * edge_);
+    tile->rows[row_of(k, t)] ^= bit_of(k, t);
     cell_count_ = now ? cell_count_ + 1 : cell_count_ - 1;
   }
   sort_unique(dirty);

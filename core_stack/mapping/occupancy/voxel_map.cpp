@@ -19,6 +19,14 @@ std::int32_t cell_of(double cells) {
   return static_cast<std::int32_t>(std::floor(std::min(cells, limit)));
 }
 
+/// traverse() in packed cells.
+template <class Visit>
+void walk(const Vec3& from, const Vec3& to, double resolution_m, const Visit& visit) {
+  constexpr double limit = kPackedLimit;
+  const Vec3 a = from / resolution_m, b = to / resolution_m;
+  if ((a.array().abs() < limit).all() && (b.array().abs() < limit).all()) walk_cells(a, b, visit);  // not NaN
+}
+
 }  // namespace
 
 void describe(OptionTable& t, MapOptions& o) {
@@ -106,8 +114,8 @@ std::uint64_t VoxelMap::revision_near(const Vec3& center, double radius_m) const
 std::optional<CellKey> VoxelMap::first_not_free(const Vec3& from, const Vec3& to) const {
   VoxelReader reader(*this);
   std::optional<CellKey> found;
-  traverse(from, to, storage_->resolution_m, [&](const CellKey& k) {
-    if (reader.at(k) != Cell::free) found = k;
+  walk(from, to, storage_->resolution_m, [&](PackedCell p) {
+    if (reader.at(p) != Cell::free) found = unpack(p);
     return !found;
   });
   // An invalid end (not finite, far outside the world) cannot be reached by a walk, and is not free.
@@ -119,10 +127,10 @@ std::optional<CellKey> VoxelMap::first_not_free(const Vec3& from, const Vec3& to
 std::optional<CellKey> VoxelMap::first_occupied(const Vec3& from, const Vec3& to) const {
   VoxelReader reader(*this);
   std::optional<CellKey> found;
-  traverse(from, to, storage_->resolution_m, [&](const CellKey& k) {
-    if (!in_world(k)) return false;
-    if (reader.at(k) == Cell::occupied) found = k;
-    return !found;
+  walk(from, to, storage_->resolution_m, [&](PackedCell p) {
+    const Cell cell = reader.at(p);
+    if (cell == Cell::occupied) found = unpack(p);
+    return !found && (cell != Cell::unknown || in_world(unpack(p)));
   });
   return found;
 }
@@ -154,10 +162,7 @@ void VoxelMap::for_each_in_box(const CellKey& low, const CellKey& high,
 
 void traverse(const Vec3& from, const Vec3& to, double resolution_m,
               const std::function<bool(const CellKey&)>& visit) {
-  constexpr double limit = kPackedLimit;
-  const Vec3 a = from / resolution_m, b = to / resolution_m;
-  if (!(a.array().abs() < limit).all() || !(b.array().abs() < limit).all()) return;  // NaN as well
-  walk_cells(a, b, [&](PackedCell k) { return visit(unpack(k)); });
+  walk(from, to, resolution_m, [&](PackedCell p) { return visit(unpack(p)); });
 }
 
 }  // namespace karst::core

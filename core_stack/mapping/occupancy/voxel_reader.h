@@ -23,6 +23,15 @@ class VoxelReader {
     }
     return block_ == nullptr ? Cell::unknown : class_of(block_->log_odds[local_of(k)]);
   }
+  Cell at(PackedCell p) {
+    const BlockId id = p & ~kInBlock;
+    if (id != id_) {
+      id_ = id;
+      block_ = blocks_.find(id);  // none outside the world
+    }
+    return block_ == nullptr ? Cell::unknown
+                             : class_of(block_->log_odds[word_in_block(p) << 6 | bit_in_block(p)]);
+  }
   /// Counts the cells of a closed box by class, in about a nanosecond per cell.
   CellCounts count(const CellKey& low, const CellKey& high) const;
   /// The cells of a closed box, x fastest, then y.

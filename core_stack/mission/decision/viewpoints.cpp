@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core_stack/mapping/occupancy/voxel_reader.h"
 #include "core_stack/planning/search/grid_planner.h"
 
 namespace karst::core {
@@ -14,6 +15,26 @@ namespace {
 constexpr std::array kShells = {1.0, 1.8, 2.8, 4.0, 0.4};
 constexpr std::array kElevations = {0.0, -0.35, 0.35, -0.8, 0.8, -1.4, 1.4};
 constexpr int kAzimuths = 12;
+
+/// A direction from a frontier to a candidate, and the heading that looks back.
+struct Away {
+  Vec3 direction;  // unit
+  double heading_rad;
+};
+
+std::vector<Away> directions_around() {
+  std::vector<Away> all;
+  for (const double elevation : kElevations) {
+    const int azimuths = std::abs(elevation) > 1.2 ? 4 : kAzimuths;
+    for (int i = 0; i < azimuths; ++i) {
+      const double azimuth = 2 * std::numbers::pi * i / azimuths;
+      const Vec3 away(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                      std::sin(elevation));
+      all.push_back({away, std::atan2(-away.y(), -away.x())});
+    }
+  }
+  return all;
+}
 
 /// LiDAR rings spread with range: beyond this a scan is too sparse to close a frontier.
 constexpr double kLidarViewRange_m = 10.0;
@@ -104,11 +125,12 @@ bool in_view(const VehicleDescription& vehicle, const Viewpoint& from, const Vec
 }
 
 int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
+  VoxelReader reader(map);
   int open = 0;
   for (const CellKey& k : cluster.cells) {
     bool rock = false;
     for (int i = 0; i < 27 && !rock; ++i)
-      rock = map.at(k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}) == Cell::occupied;
+      rock = reader.at(k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}) == Cell::occupied;
     open += !rock;
   }
   return open;
@@ -117,7 +139,9 @@ int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
 std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierCluster& cluster,
                                         const VehicleDescription& vehicle, double clearance_m,
                                         const Roadmap* roadmap) {
+  static const std::vector<Away> directions = directions_around();
   const Vec3 target = cell_at_centroid(map, cluster);
+  VoxelReader reader(map);
   std::optional<Viewpoint> best;
   double best_value = 0;
   const auto consider = [&](const Vec3& position, double azimuth) {
@@ -134,20 +158,13 @@ std::optional<Viewpoint> find_viewpoint(const VoxelMap& map, const FrontierClust
   };
   for (const bool narrow : {false, true}) {
     for (const double radius : kShells) {
-      for (const double elevation : kElevations) {
-        const int azimuths = std::abs(elevation) > 1.2 ? 4 : kAzimuths;
-        for (int i = 0; i < azimuths; ++i) {
-          const double azimuth = 2 * std::numbers::pi * i / azimuths;
-          const Vec3 away(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                          std::sin(elevation));
-          const Vec3 position = target + radius * away;
-          const double heading_rad = std::atan2(-away.y(), -away.x());
-          if (map.at(position) != Cell::free) continue;
-          if (!narrow) {
-            if (is_clear(map, position, clearance_m)) consider(position, heading_rad);
-          } else if (const auto clear = clear_near(map, position, clearance_m)) {
-            consider(*clear, heading_rad);
-          }
+      for (const Away& away : directions) {
+        const Vec3 position = target + radius * away.direction;
+        if (reader.at(map.key_of(position)) != Cell::free) continue;
+        if (!narrow) {
+          if (is_clear(map, position, clearance_m)) consider(position, away.heading_rad);
+        } else if (const auto clear = clear_near(map, position, clearance_m)) {
+          consider(*clear, away.heading_rad);
         }
       }
       if (best) return best;

@@ -126,12 +126,19 @@ TileBits FreeTiles::clear_cells(const TileKey& t, const ClearanceRule& rule) con
   TileBits out = bits(t);
   if (std::all_of(out.begin(), out.end(), [](std::uint32_t r) { return r == 0; })) return out;
   const int p = rule.extent();
-  const CellKey c = corner_of(t);
   WideRows free(p);
-  for (int z = -p; z < 8 + p; ++z)
-    for (int y = -p; y < 8 + p; ++y)
-      free.at(y, z) = std::uint64_t{row(c.x - 16, c.y + y, c.z + z)} |
-                      std::uint64_t{row(c.x + 16, c.y + y, c.z + z)} << 32;
+  const int most = (p + 7) / 8;  // tiles on each side that the margin reaches into
+  for (int tz = -most; tz <= most; ++tz)
+    for (int ty = -most; ty <= most; ++ty) {
+      const TileBits &before = bits({t.x - 1, t.y + ty, t.z + tz}), &here = bits({t.x, t.y + ty, t.z + tz}),
+                     &after = bits({t.x + 1, t.y + ty, t.z + tz});
+      for (int z = std::max(8 * tz, -p); z < std::min(8 * tz + 8, 8 + p); ++z)
+        for (int y = std::max(8 * ty, -p); y < std::min(8 * ty + 8, 8 + p); ++y) {
+          const std::uint32_t r = row_of(y, z);
+          free.at(y, z) =
+              std::uint64_t{before[r]} >> 16 | std::uint64_t{here[r]} << 16 | std::uint64_t{after[r]} << 48;
+        }
+    }
   const std::vector<WideRows> eroded = eroded_along_x(std::move(free), p);
 
   const auto for_each_row = [](const auto& f) {

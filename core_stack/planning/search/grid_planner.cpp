@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "core_stack/common/format_text.h"
+#include "core_stack/mapping/occupancy/voxel_reader.h"
 #include "core_stack/mapping/region/flight_region.h"
 #include "core_stack/planning/free_space/escape.h"
 #include "core_stack/planning/free_space/segment_rows.h"
@@ -116,7 +117,8 @@ bool segment_clear(const VoxelMap& map, const Vec3& a, const Vec3& b, double cle
   const double reach_m = (b - a).norm() / 2 + clearance_m + res;
   const bool at_border = confined == Confined::yes && map.region() &&
                          !(map.region()->depth_m((a + b) / 2) >= map.region()->limits().margin_m + reach_m);
-  const auto free = [&](const CellKey& k) { return at_border ? map.may_fly(k) : map.at(k) == Cell::free; };
+  VoxelReader reader(map);
+  const auto free = [&](const CellKey& k) { return at_border ? map.may_fly(k) : reader.at(k) == Cell::free; };
   const bool near_free =
       all_rows_near_segment(a / res - half, b / res - half, clearance_m / res,
                             [&free](std::int32_t x_low, std::int32_t x_high, std::int32_t y, std::int32_t z) {
