@@ -22,9 +22,16 @@ void sort_unique(std::vector<Key>& keys) {
 }
 
 /// Whether the region leaves the cell to be explored: what lies outside of it is nothing to look for.
-bool explorable(const VoxelMap& map, const CellKey& k) {
-  return !map.region() || map.region()->contains(map.center_of(k));
+bool explorable(const VoxelMap& map, PackedCell p) {
+  return !map.region() || map.region()->contains(map.center_of(unpack(p)));
 }
+
+/// What leads from a cell to its neighbours, in the order of kFaces.
+constexpr auto kPackedFaces = [] {
+  std::array<PackedCell, kFaces.size()> steps{};
+  for (std::size_t i = 0; i < kFaces.size(); ++i) steps[i] = pack(kFaces[i]) - pack({});
+  return steps;
+}();
 
 /// The cells around a cell, with one reader per direction: between neighbouring cells it stays in its block.
 class FaceReaders {
@@ -32,12 +39,13 @@ class FaceReaders {
   explicit FaceReaders(const VoxelMap& map)
       : map_(map), readers_{VoxelReader(map), VoxelReader(map), VoxelReader(map),
                             VoxelReader(map), VoxelReader(map), VoxelReader(map)} {}
-  bool unknown(const CellKey& k, std::size_t face) {
-    return readers_[face].at(k + kFaces[face]) == Cell::unknown && explorable(map_, k + kFaces[face]);
+  bool unknown(PackedCell p, std::size_t face) {
+    return readers_[face].at(p + kPackedFaces[face]) == Cell::unknown &&
+           explorable(map_, p + kPackedFaces[face]);
   }
-  bool any_unknown(const CellKey& k) {
+  bool any_unknown(PackedCell p) {
     for (std::size_t face = 0; face < kFaces.size(); ++face)
-      if (unknown(k, face)) return true;
+      if (unknown(p, face)) return true;
     return false;
   }
 
@@ -56,8 +64,7 @@ std::vector<PackedCell> cells_concerned(std::span<const CellChange> changes) {
   }
   for (auto* list : {&cells, &became_known})
     if (!std::is_sorted(list->begin(), list->end())) std::sort(list->begin(), list->end());
-  for (const CellKey& f : kFaces) {
-    const PackedCell step = pack(f) - pack({});
+  for (const PackedCell step : kPackedFaces) {
     shifted.clear();
     for (const PackedCell p : became_known) shifted.push_back(p + step);
     merged.clear();
@@ -166,7 +173,8 @@ std::vector<CellKey> Frontiers::update_cells(const VoxelMap& map, std::span<cons
       const auto found = tiles_.find(t);
       tile = found == tiles_.end() ? nullptr : &found->second;
     }
-    const bool now = reader.at(candidate) == Cell::free && faces.any_unknown(k) && explorable(map, k);
+    const bool now =
+        reader.at(candidate) == Cell::free && faces.any_unknown(candidate) && explorable(map, candidate);
     const bool before = tile != nullptr && (tile->rows[row_of(k, t)] & bit_of(k, t)) != 0;
     if (!now && !before) continue;
     if (dirty.empty() || dirty.back() != t) dirty.push_back(t);
@@ -265,8 +273,9 @@ void Frontiers::publish(const VoxelMap& map, const Part& part) {
     sum = sum + k;
     low = {std::min(low.x, k.x), std::min(low.y, k.y), std::min(low.z, k.z)};
     high = {std::max(high.x, k.x), std::max(high.y, k.y), std::max(high.z, k.z)};
+    const PackedCell p = pack(k);
     for (std::size_t face = 0; face < kFaces.size(); ++face)
-      if (faces.unknown(k, face)) into_unknown = into_unknown + kFaces[face];
+      if (faces.unknown(p, face)) into_unknown = into_unknown + kFaces[face];
   }
   const Vec3 half = Vec3::Constant(map.resolution_m() / 2);
   c.centroid = (Vec3(sum.x, sum.y, sum.z) / static_cast<double>(part.cells.size()) + Vec3::Constant(0.5)) *

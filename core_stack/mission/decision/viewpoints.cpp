@@ -88,6 +88,14 @@ double heading_towards(const Vec3& from, const Vec3& target) {
   return std::atan2(target.y() - from.y(), target.x() - from.x());
 }
 
+/// What leads from a cell to itself and its 26 neighbours.
+constexpr auto kAround = [] {
+  std::array<PackedCell, 27> steps{};
+  for (int i = 0; i < 27; ++i)
+    steps[static_cast<std::size_t>(i)] = pack({i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}) - pack({});
+  return steps;
+}();
+
 /// Whether the centre of an occupied cell lies within `radius_m` of `p`.
 bool rock_within(const VoxelMap& map, const Vec3& p, double radius_m) {
   const CellKey low = map.key_of(p - Vec3::Constant(radius_m)),
@@ -130,7 +138,7 @@ int open_cells(const VoxelMap& map, const FrontierCluster& cluster) {
   for (const CellKey& k : cluster.cells) {
     bool rock = false;
     for (int i = 0; i < 27 && !rock; ++i)
-      rock = reader.at(k + CellKey{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}) == Cell::occupied;
+      rock = reader.at(pack(k) + kAround[static_cast<std::size_t>(i)]) == Cell::occupied;
     open += !rock;
   }
   return open;

@@ -31,6 +31,7 @@ class RowsNearSegment {
     Interval out;
     const double wy = y - a_.y(), wz = z - a_.z(), vy = y - b_.y(), vz = z - b_.z();
     cover_ball(a_.x(), r2_ - wy * wy - wz * wz, out);
+    if (l2_ == 0) return out;  // a point
     cover_ball(b_.x(), r2_ - vy * vy - vz * vz, out);
     if (l2_ < 1e-12) return out;
     // Between the ends: w = (X, wy, wz) from a, t = w.d in [0, |d|^2], |w|^2 - t^2 / |d|^2 <= r^2.

@@ -40,10 +40,12 @@ void check_stl(const std::string& path, std::ifstream& in, std::uintmax_t size) 
     throw InputError(path, "", "the file is truncated: a text STL ends with \"endsolid\"");
 }
 
-void check_ply(const std::string& path, std::ifstream& in) {
+void check_ply(const std::string& path, std::ifstream& in, std::uintmax_t size) {
   const PlyHeader header = read_ply_header(path, in);
   const auto header_size = static_cast<std::uintmax_t>(in.tellg());
-  const std::string body(std::istreambuf_iterator<char>(in), {});
+  std::string body(static_cast<std::size_t>(size - std::min(size, header_size)), '\0');
+  in.read(body.data(), static_cast<std::streamsize>(body.size()));
+  body.resize(static_cast<std::size_t>(in.gcount()));
   if (header.format != "ascii")
     return walk_binary_ply(path, header, body, header_size,
                            [](const PlyElement&, std::size_t, std::size_t) {});
@@ -69,7 +71,7 @@ void check_declared_size(const std::string& path) {
   if (size == 0) throw InputError(path, "", "the file is empty");
   const std::string extension = lower_extension(path);
   if (extension == ".stl") check_stl(path, in, size);
-  if (extension == ".ply") check_ply(path, in);
+  if (extension == ".ply") check_ply(path, in, size);
 }
 
 }  // namespace karst::cave
