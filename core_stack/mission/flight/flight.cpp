@@ -281,9 +281,13 @@ Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) co
   return out;
 }
 
+/// The acceleration reaches that of braking with limited jerk: x = v T + a T^2 / 2 - j T^3 / 6 until then.
 Flight::CommittedSegment Flight::until_stop(TimeNs t) const {
-  const double v = velocity_at(t).norm();
-  return committed_segment(t, v * v / (2 * braking_mps2()));
+  const double v = velocity_at(t).norm(), braking = braking_mps2(), jerk = limits_.max_jerk_mps3;
+  if (v < 1e-3) return committed_segment(t, 0);
+  const double a = std::clamp(departure_at(t).acceleration_mps2.dot(velocity_at(t)) / v, -braking, braking);
+  const double T = (a + braking) / jerk, v_then = std::max(0.0, v + 0.5 * (a - braking) * T);
+  return committed_segment(t, v * T + a * T * T / 2 - jerk * T * T * T / 6 + v_then * v_then / (2 * braking));
 }
 
 Flight::CommittedSegment Flight::until_end(TimeNs t) const {
