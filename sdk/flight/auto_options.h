@@ -20,7 +20,7 @@ inline void describe(core::OptionTable& t, AutoOptions& o) {
         "a survey of the cave: a mesh, or a cave's .info file; it may be the cave that is flown");
   t.add("survey_start", o.survey_start, {}, "\"x y z\" in the survey, of a mesh");
   t.add("results", o.results, {}, "store of a campaign, or an experience; empty: what is installed");
-  t.add("metric", o.select.metric, {}, "the figure to do best in");
+  t.add("metric", o.select.metric, {}, "the goal, as karst select --for has it, or the figure to do best in");
   t.add("otherwise", o.otherwise, {}, "the policy if nothing similar was flown; empty: no flight");
 }
 

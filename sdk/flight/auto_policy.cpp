@@ -5,9 +5,11 @@
 
 #include "core_stack/common/error.h"
 #include "core_stack/common/info_lines.h"
+#include "core_stack/common/options.h"
 #include "core_stack/common/shell_word.h"
 #include "sdk/flight/auto_options.h"
 #include "sdk/selection/describe.h"
+#include "sdk/selection/goal.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
 #include "sdk/selection/select.h"
@@ -114,9 +116,19 @@ selection::CaveFigures known_of(const Mission& m, const AutoOptions& o) {
 
 }  // namespace
 
+selection::AskedConditions conditions_of(const Mission& m) {
+  selection::Condition c;
+  c.horizon_s = m.core.mission.max_flight_time_s;
+  for (const auto& [key, value] : core::leaves_of(m.resolved)) c.mission.emplace_back(key, value);
+  selection::complete(c, m.resolved.get("mission.max_flight_time", ""), m.file);
+  return selection::asked(c);
+}
+
 void choose_policy(Mission& m) {
   if (m.policy != kAutoPolicy) return;
-  const AutoOptions o = options_of(m);
+  AutoOptions o = options_of(m);
+  o.select.metric = selection::metric_for(o.select.metric, m.file + ": policy.auto.metric");
+  o.select.conditions = conditions_of(m);
   if (found_in_table(m)) return;
   const selection::CaveFigures figures = known_of(m, o);
   const std::string results = o.results.empty() ? selection::installed_experience() : o.results;

@@ -18,10 +18,15 @@
 // unless it is given as the survey. All keys: auto_options.h.
 #pragma once
 #include "sdk/flight/mission_file.h"
+#include "sdk/selection/condition.h"
 
 namespace karst::flight {
 
 inline constexpr const char* kAutoPolicy = "auto";
+
+/// The conditions of a mission that a selection depends on, as far as it states them: a vehicle that is not
+/// simulated has no name here.
+selection::AskedConditions conditions_of(const Mission& mission);
 
 /// If the mission asks for `auto`, sets its policy, the policy's parameters and the reason
 /// (`policy_selection`). Throws InputError naming file, key and reason, also if nothing is known of the cave,

@@ -150,7 +150,12 @@ void add_ranking(const Experience& e, const selection::Selected& s, PolicyFacts&
   }
   f.confidence = s.confidence;
   f.confidence_words = selection::confidence_in_words(e, s);
-  f.horizon_s = e.flown.horizon_s;
+  double weight = 0;
+  for (std::size_t site = 0; site < e.sites.size(); ++site)
+    if (s.weights.level[site] > weight) {
+      weight = s.weights.level[site];
+      f.horizon_s = selection::horizon_s(e, site);
+    }
 }
 
 selection::FlightTime flight_time(const TimeBudget& t) {
@@ -185,12 +190,14 @@ void add_expected(const Experience& e, const CaveFacts& cave, const TimeBudget& 
 selection::Selected selected_for(const std::optional<Experience>& e, const Mission& m,
                                  const LookOptions& options, const selection::CaveFigures& figures,
                                  const std::string& mesh_hash) {
+  selection::SelectOptions select = options.select;
+  select.conditions = flight::conditions_of(m);
   selection::Selected none;
   none.refused = true;
   none.reason = "no experience is installed, and --results gives none";
   if (!e) return none;
   try {
-    return selection::select(*e, figures, options.select, m.cave, mesh_hash);
+    return selection::select(*e, figures, select, m.cave, mesh_hash);
   } catch (const InputError& error) {
     none.reason = error.what();
     return none;

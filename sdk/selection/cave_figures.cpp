@@ -20,24 +20,39 @@ using C = CaveFigures;
 // map (docs/select.md).
 constexpr std::array kFigures{
     FigureDefinition{"volume", "m^3", &C::volume_m3, 1, 1e9, true, 0, 0.2, 1,
+                     false,
                      "free space that a vehicle can reach or see, with half of the cells at the rock"},
-    FigureDefinition{"length", "m", &C::length_m, 1, 1e6, true, 0, 0.2, 0.5, "length of all passages"},
+    FigureDefinition{"length", "m", &C::length_m, 1, 1e6, true, 0, 0.2, 0.5, false, "length of all passages"},
     FigureDefinition{"width", "m", &C::width_m, 0.5, 500, true, 0, 0.15, 1,
+                     true,
                      "median over the passages of the widest ball that fits, its diameter"},
     FigureDefinition{"width_spread", "", &C::width_spread, 1, 100, true, 0, 0.15, 0.5,
+                     false,
                      "90th over 10th percentile of the width"},
     FigureDefinition{"height", "m", &C::height_m, 0.5, 1000, true, 0, 0.15, 0.5,
+                     true,
                      "geometric mean over the passages of the height from floor to roof"},
     FigureDefinition{"drop", "m", &C::drop_m, 0.5, 5000, true, 2, 0.2, 0.5,
+                     false,
                      "from the lowest place to the highest"},
     FigureDefinition{"verticality", "", &C::verticality, 0, 1, false, 0, 0.05, 1,
+                     true,
                      "vertical share of the way along the passages: 0 level, 1 shafts only"},
     FigureDefinition{"branching", "", &C::branching, 0, 100, true, 1, 0.25, 1,
+                     false,
                      "junctions in 100 m of passage"},
     FigureDefinition{"loops", "", &C::loops, 0, 100, true, 0.5, 0.25, 1,
+                     false,
                      "ways round, back to the same place, in 100 m of passage"},
     FigureDefinition{"tortuosity", "", &C::tortuosity, 1, 50, true, 0, 0.05, 0.5,
+                     false,
                      "way between two places over their straight distance, median"},
+    FigureDefinition{"hall_width", "m", &C::hall_width_m, 0.5, 1000, true, 0, 0.15, 0.5, false,
+                     "the widest ball that fits anywhere, its diameter"},
+    FigureDefinition{"dead_ends", "", &C::dead_ends, 0, 100, true, 1, 0.25, 0.5, false,
+                     "passages that end, in 100 m of passage"},
+    FigureDefinition{"sight", "m", &C::sight_m, 0.5, 500, true, 0, 0.15, 0.5, false,
+                     "median over the passages of the longest straight line of sight"},
 };
 
 }  // namespace
@@ -46,6 +61,13 @@ std::span<const FigureDefinition> figure_definitions() { return kFigures; }
 
 double scaled(const FigureDefinition& figure, double value) {
   return figure.logarithmic ? std::log(value + figure.offset) : value;
+}
+
+CaveFigures told_by_part(const CaveFigures& of_part) {
+  CaveFigures told;
+  for (const FigureDefinition& f : kFigures)
+    if (f.told_by_part) told.*f.value = of_part.*f.value;
+  return told;
 }
 
 std::string to_json(const CaveFigures& figures) {

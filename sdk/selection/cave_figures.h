@@ -1,4 +1,4 @@
-// Description of a cave by ten figures, which are used to compare caves. One table defines each figure's
+// Description of a cave by figures, which are used to compare caves. One table defines each figure's
 // name, unit, range and scale of comparison; files, JSON, text and distances all follow it
 // (docs/select.md).
 #pragma once
@@ -23,6 +23,9 @@ struct CaveFigures {
   double branching = kUnknown;
   double loops = kUnknown;
   double tortuosity = kUnknown;
+  double hall_width_m = kUnknown;
+  double dead_ends = kUnknown;
+  double sight_m = kUnknown;
 };
 
 struct FigureDefinition {
@@ -35,6 +38,7 @@ struct FigureDefinition {
   double offset;
   double min_scale;  // least unit of differences, however similar the known caves are
   double weight;
+  bool told_by_part;  // a part of the cave tells it, too: it does not grow with what is explored
   std::string_view meaning;
 };
 
@@ -42,6 +46,9 @@ std::span<const FigureDefinition> figure_definitions();
 
 /// The value on the scale on which it is compared; NaN stays NaN.
 double scaled(const FigureDefinition& figure, double value);
+
+/// What a part of the cave tells of the whole: the figures with told_by_part.
+CaveFigures told_by_part(const CaveFigures& of_part);
 
 /// A JSON object of the known figures, rounded to six digits: the form in which a campaign's store keeps a
 /// cave.

@@ -4,6 +4,7 @@
 #include <boost/property_tree/ptree.hpp>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <numeric>
 
 #include "core_stack/common/error.h"
@@ -117,6 +118,18 @@ double verticality(const std::vector<PassageNode>& nodes, const std::vector<Slic
   return all > 0 ? up / all : kUnknown;
 }
 
+/// The longest line of sight from a place, in directions spread evenly over the sphere (the golden spiral).
+double longest_sight(const FreeSpace& space, const Vec3& from) {
+  constexpr int kDirections = 64;
+  double longest = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z),
+                 a = i * std::numbers::pi * (3 - std::sqrt(5.0));
+    longest = std::max(longest, space.range_to_rock(from, {r * std::cos(a), r * std::sin(a), z}));
+  }
+  return longest;
+}
+
 }  // namespace
 
 CaveFigures describe(const FreeSpace& space) {
@@ -138,14 +151,17 @@ CaveFigures describe(const FreeSpace& space) {
   CaveFigures f;
   f.volume_m3 = space.volume_m3;
   f.length_m = static_cast<double>(nodes.size()) * band_m + space.clearance_m;
-  std::vector<std::pair<double, double>> widths, ratios;
+  std::vector<std::pair<double, double>> widths, sights, ratios;
   double log_heights = 0;
   for (const Slice& s : slices) {
     widths.emplace_back(s.width_m, 1.0);
+    sights.emplace_back(longest_sight(space, s.middle), 1.0);
     log_heights += std::log(space.range_to_rock(s.middle, Vec3::UnitZ()) +
                             space.range_to_rock(s.middle, -Vec3::UnitZ()));
   }
   f.width_m = quantile(widths, 0.5);
+  f.hall_width_m = quantile(widths, 1.0);
+  f.sight_m = quantile(sights, 0.5);
   f.width_spread = quantile(widths, 0.9) / quantile(widths, 0.1);
   f.height_m = std::exp(log_heights / static_cast<double>(slices.size()));
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
@@ -158,6 +174,7 @@ CaveFigures describe(const FreeSpace& space) {
   f.verticality = verticality(nodes, slices, least);
   f.branching = junctions(nodes) * 100.0 / f.length_m;
   f.loops = loops(nodes) * 100.0 / f.length_m;
+  f.dead_ends = dead_ends(nodes) * 100.0 / f.length_m;
 
   // Paths from three places far from each other to all cells that are not near them.
   std::vector<float> nearest_source = distance;

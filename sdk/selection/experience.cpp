@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core_stack/common/error.h"
@@ -14,8 +13,6 @@ namespace karst::selection {
 namespace {
 
 using core::InputError;
-
-constexpr std::size_t kSettingsNamed = 4;
 
 /// Converts a policy's parameters to a mission file's form, which has them as text.
 boost::property_tree::ptree parameters_of(const std::string& json, const std::string& source,
@@ -45,20 +42,6 @@ Fared fared_of(const std::vector<double>& figures) {
   return f;
 }
 
-Experience empty_like(const std::vector<KnownCave>& caves, const std::vector<Preset>& contestants,
-                      const Conditions& flown) {
-  Experience e{caves, contestants, learned_metrics(), {}, flown};
-  e.fared.resize(caves.size() * contestants.size() * e.metrics.size());
-  return e;
-}
-
-/// All values by key: a key may occur several times (a list of blocks).
-std::map<std::string, std::string> by_key(const std::vector<std::pair<std::string, std::string>>& settings) {
-  std::map<std::string, std::string> values;
-  for (const auto& [key, value] : settings) values[key] += (values.count(key) ? ", " : "") + value;
-  return values;
-}
-
 std::string text_of(const boost::property_tree::ptree& parameters) {
   std::string text;
   for (const auto& [key, value] : parameters) text += " " + key + "=" + value.data();
@@ -76,28 +59,25 @@ std::string difference(const Preset& a, const Preset& b) {
 
 }  // namespace
 
-std::string difference(const Conditions& a, const Conditions& b) {
-  std::string text;
-  const auto differ = [&](const std::string& what, const std::string& there, const std::string& here) {
-    text += (text.empty() ? "" : "; ") + what + " " + here + " here, " + there + " there";
-  };
-  if (a.horizon_s != b.horizon_s)
-    differ("horizon", core::json_text(nlohmann::json(a.horizon_s)) + " s",
-           core::json_text(nlohmann::json(b.horizon_s)) + " s");
-  if (a.profile != b.profile) differ("profile", a.profile, b.profile);
-  std::size_t settings = 0;
-  const std::map<std::string, std::string> here = by_key(b.mission);
-  for (const auto& [key, value] : by_key(a.mission))
-    if (const auto same = here.find(key); same != here.end() && same->second != value)
-      if (++settings <= kSettingsNamed) differ(key, value, same->second);
-  if (settings > kSettingsNamed) text += "; " + std::to_string(settings - kSettingsNamed) + " more settings";
-  return text;
+void lay_out(Experience& e, std::vector<Site> sites) {
+  e.sites = std::move(sites);
+  e.metrics = learned_metrics();
+  e.fared.assign(e.sites.size() * e.contestants.size() * e.metrics.size(), {});
+}
+
+std::vector<Site> all_sites(const Experience& e) {
+  std::vector<Site> sites;
+  for (std::size_t q = 0; q < e.conditions.size(); ++q)
+    for (std::size_t c = 0; c < e.caves.size(); ++c) sites.push_back({c, q});
+  return sites;
 }
 
 const std::vector<std::string>& learned_metrics() {
   static const std::vector<std::string> metrics{
-      "coverage_auc", "coverage",           "restricted_t50_s",    "restricted_t90_s", "completed",
-      "contacts",     "explored_volume_m3", "exploring_speed_mps", "path_length_m",    "energy_wh"};
+      "coverage_auc",  "coverage",       "restricted_t50_s", "restricted_t90_s",   "completed",
+      "contacts",      "explored_volume_m3", "exploring_speed_mps", "path_length_m", "energy_wh",
+      "depth_m",       "surface_imaged", "surface_seen",     "objects_found",      "objects_reported",
+      "volume_per_wh_m3"};
   return metrics;
 }
 
@@ -126,76 +106,115 @@ Experience learn(const campaign::CampaignResults& results, const std::string& so
     throw InputError(source, "campaign.definition",
                      "does not tell for how long and in which profile it flew");
 
-  Experience e = empty_like(caves, contestants, {results.horizon_s, results.profile, results.shared});
+  Experience e;
+  e.caves = std::move(caves);
+  e.contestants = std::move(contestants);
+  e.conditions.push_back({.horizon_s = results.horizon_s, .profile = results.profile, .mission = results.shared});
+  complete(e.conditions.front(), results.flight_time, source);
+  lay_out(e, all_sites(e));
   for (std::size_t m = 0; m < e.metrics.size(); ++m) {
     const int metric = evaluation::metric_index(e.metrics[m]);
-    std::vector<std::vector<double>> figures(contestants.size() * caves.size());
+    std::vector<std::vector<double>> figures(e.contestants.size() * e.caves.size());
     for (const campaign::TrialResult& t : results.trials) {
       const int k = contestant_of[t.contestant], c = cave_of[t.cave];
       if (k < 0 || c < 0) continue;
       const double v = campaign::figure_of(t, metric, results.horizon_s);
       if (std::isfinite(v))
-        figures[static_cast<std::size_t>(k) * caves.size() + static_cast<std::size_t>(c)].push_back(v);
+        figures[static_cast<std::size_t>(k) * e.caves.size() + static_cast<std::size_t>(c)].push_back(v);
     }
-    for (std::size_t k = 0; k < contestants.size(); ++k)
-      for (std::size_t c = 0; c < caves.size(); ++c) e.at(k, c, m) = fared_of(figures[k * caves.size() + c]);
+    for (std::size_t k = 0; k < e.contestants.size(); ++k)
+      for (std::size_t c = 0; c < e.caves.size(); ++c)
+        e.at(k, c, m) = fared_of(figures[k * e.caves.size() + c]);
   }
   return e;
 }
 
 Experience merged(const Experience& a, const Experience& b, const std::string& source) {
-  if (const std::string how = difference(a.flown, b.flown); !how.empty())
-    throw InputError(source, "",
-                     "was flown otherwise than the other results, and figures of such flights do not "
-                     "compare: " +
-                         how);
-  std::vector<KnownCave> caves = a.caves;
-  std::vector<Preset> contestants = a.contestants;
-  std::vector<std::size_t> cave_of, contestant_of;
+  Experience e;
+  e.caves = a.caves;
+  e.contestants = a.contestants;
+  e.conditions = a.conditions;
+  std::vector<std::size_t> cave_of, contestant_of, condition_of;
+  for (const Condition& condition : b.conditions) {
+    for (const Condition& known : e.conditions)
+      if (const std::string how = difference(known, condition); !how.empty())
+        throw InputError(source, "",
+                         "was flown otherwise than the other results, and figures of such flights do not "
+                         "compare: " +
+                             how);
+    const auto same = std::find_if(e.conditions.begin(), e.conditions.end(),
+                                   [&](const Condition& c) { return same_kind(c, condition); });
+    condition_of.push_back(static_cast<std::size_t>(same - e.conditions.begin()));
+    if (same != e.conditions.end()) continue;
+    e.conditions.push_back(condition);
+    const auto taken = [&](const std::string& name) {
+      return std::any_of(e.conditions.begin(), e.conditions.end() - 1,
+                         [&](const Condition& c) { return c.name == name; });
+    };
+    for (int n = 2; taken(e.conditions.back().name); ++n)
+      e.conditions.back().name = condition.name + "_" + std::to_string(n);
+  }
   for (const KnownCave& cave : b.caves) {
-    const auto same =
-        std::find_if(caves.begin(), caves.end(), [&](const KnownCave& c) { return c.name == cave.name; });
-    cave_of.push_back(static_cast<std::size_t>(same - caves.begin()));
-    if (same == caves.end())
-      caves.push_back(cave);
+    const auto same = std::find_if(e.caves.begin(), e.caves.end(),
+                                   [&](const KnownCave& c) { return c.name == cave.name; });
+    cave_of.push_back(static_cast<std::size_t>(same - e.caves.begin()));
+    if (same == e.caves.end())
+      e.caves.push_back(cave);
     else if (same->hash != cave.hash || to_json(same->figures) != to_json(cave.figures))
       throw InputError(source, cave.name, "is another cave than the one of the same name in other results");
   }
   for (const Preset& preset : b.contestants) {
-    const auto same = std::find_if(contestants.begin(), contestants.end(),
+    const auto same = std::find_if(e.contestants.begin(), e.contestants.end(),
                                    [&](const Preset& p) { return p.name == preset.name; });
-    contestant_of.push_back(static_cast<std::size_t>(same - contestants.begin()));
-    if (same == contestants.end())
-      contestants.push_back(preset);
+    contestant_of.push_back(static_cast<std::size_t>(same - e.contestants.begin()));
+    if (same == e.contestants.end())
+      e.contestants.push_back(preset);
     else if (const std::string how = difference(*same, preset); !how.empty())
       throw InputError(source, preset.name,
                        "is another contestant than the one of the same name in other results: " + how);
   }
-  Experience e = empty_like(caves, contestants, a.flown);
+  std::vector<Site> sites = a.sites;
+  std::vector<std::size_t> site_of;
+  for (const Site& s : b.sites) {
+    const Site here{cave_of[s.cave], condition_of[s.condition]};
+    const auto same = std::find_if(sites.begin(), sites.end(), [&](const Site& t) {
+      return t.cave == here.cave && t.condition == here.condition;
+    });
+    site_of.push_back(static_cast<std::size_t>(same - sites.begin()));
+    if (same == sites.end()) sites.push_back(here);
+  }
+  lay_out(e, std::move(sites));
   for (std::size_t m = 0; m < e.metrics.size(); ++m) {
     for (std::size_t k = 0; k < a.contestants.size(); ++k)
-      for (std::size_t c = 0; c < a.caves.size(); ++c) e.at(k, c, m) = a.at(k, c, m);
+      for (std::size_t s = 0; s < a.sites.size(); ++s) e.at(k, s, m) = a.at(k, s, m);
     for (std::size_t k = 0; k < b.contestants.size(); ++k)
-      for (std::size_t c = 0; c < b.caves.size(); ++c) {
-        Fared& there = e.at(contestant_of[k], cave_of[c], m);
-        if (b.at(k, c, m).flights == 0) continue;
+      for (std::size_t s = 0; s < b.sites.size(); ++s) {
+        Fared& there = e.at(contestant_of[k], site_of[s], m);
+        if (b.at(k, s, m).flights == 0) continue;
         if (there.flights > 0)
-          throw InputError(source, b.contestants[k].name + " in " + b.caves[c].name,
+          throw InputError(source, b.contestants[k].name + " in " + b.caves[b.sites[s].cave].name,
                            "flights of them are in other results as well; they may be the same flights");
-        there = b.at(k, c, m);
+        there = b.at(k, s, m);
       }
   }
   return e;
 }
 
 Experience without_cave(const Experience& experience, std::size_t cave) {
-  std::vector<KnownCave> caves = experience.caves;
-  caves.erase(caves.begin() + static_cast<std::ptrdiff_t>(cave));
-  Experience e = empty_like(caves, experience.contestants, experience.flown);
-  e.source = experience.source;
+  Experience e = experience;
+  e.caves.erase(e.caves.begin() + static_cast<std::ptrdiff_t>(cave));
+  std::vector<Site> sites;
+  std::vector<std::size_t> before;
+  for (std::size_t s = 0; s < experience.sites.size(); ++s) {
+    const Site site = experience.sites[s];
+    if (site.cave == cave) continue;
+    sites.push_back({site.cave - (site.cave > cave), site.condition});
+    before.push_back(s);
+  }
+  lay_out(e, std::move(sites));
   for (std::size_t k = 0; k < e.contestants.size(); ++k)
-    for (std::size_t c = 0; c < caves.size(); ++c)
-      for (std::size_t m = 0; m < e.metrics.size(); ++m) e.at(k, c, m) = experience.at(k, c + (c >= cave), m);
+    for (std::size_t s = 0; s < e.sites.size(); ++s)
+      for (std::size_t m = 0; m < e.metrics.size(); ++m) e.at(k, s, m) = experience.at(k, before[s], m);
   return e;
 }
 

@@ -1,14 +1,15 @@
 // Results of campaigns, reduced to the data that a selection needs: caves by their figures, contestants with
-// their parameters, and each contestant's results in each cave. Stored in a small INFO file
+// their parameters, the conditions of the flights, and each contestant's results in each cave under each
+// condition. Stored in a small INFO file
 // (docs/select.md).
 #pragma once
 #include <boost/property_tree/ptree.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "sdk/campaign/store/results.h"
 #include "sdk/selection/cave_figures.h"
+#include "sdk/selection/condition.h"
 
 namespace karst::selection {
 
@@ -29,33 +30,32 @@ struct Fared {
   double mean = kUnknown, deviation = kUnknown;  // deviation over seeds; NaN for fewer than two
 };
 
-/// The conditions of all flights of an experience. Figures of flights under different conditions are not
-/// comparable: a longer flight covers more.
-struct Conditions {
-  double horizon_s = 0;  // the longest possible exploration
-  std::string profile;
-  std::vector<std::pair<std::string, std::string>> mission;  // campaign::CampaignResults::shared
+/// Where flights were flown: a cave, and the conditions there. By index in the experience.
+struct Site {
+  std::size_t cave = 0, condition = 0;
 };
-
-/// The differences in words; "" if there are none. A setting that only one of them has does not count: it may
-/// come from another version of karst.
-std::string difference(const Conditions& a, const Conditions& b);
 
 struct Experience {
   std::vector<KnownCave> caves;
   std::vector<Preset> contestants;
+  std::vector<Condition> conditions;
+  std::vector<Site> sites;           // by condition, then cave; only pairs with flights
   std::vector<std::string> metrics;  // names of evaluation::metric_definitions()
-  std::vector<Fared> fared;          // by contestant, cave, metric
-  Conditions flown = {};
-  std::string source = {};  // the source files, for messages
+  std::vector<Fared> fared;          // by contestant, site, metric
+  std::string source = {};           // the source files, for messages
 
-  const Fared& at(std::size_t contestant, std::size_t cave, std::size_t metric) const {
-    return fared[(contestant * caves.size() + cave) * metrics.size() + metric];
+  const Fared& at(std::size_t contestant, std::size_t site, std::size_t metric) const {
+    return fared[(contestant * sites.size() + site) * metrics.size() + metric];
   }
-  Fared& at(std::size_t contestant, std::size_t cave, std::size_t metric) {
-    return fared[(contestant * caves.size() + cave) * metrics.size() + metric];
+  Fared& at(std::size_t contestant, std::size_t site, std::size_t metric) {
+    return fared[(contestant * sites.size() + site) * metrics.size() + metric];
   }
 };
+
+/// Gives the experience these sites, without results.
+void lay_out(Experience& experience, std::vector<Site> sites);
+/// Every cave under every condition.
+std::vector<Site> all_sites(const Experience& experience);
 
 /// The metrics kept in an experience: those by which flights are compared, and others of interest beforehand.
 const std::vector<std::string>& learned_metrics();
@@ -66,13 +66,19 @@ const std::vector<std::string>& learned_metrics();
 /// contain its flight conditions.
 Experience learn(const campaign::CampaignResults& results, const std::string& source);
 
-/// Both experiences together; caves and contestants with equal names are identified. Throws InputError if the
-/// flight conditions differ, if one name denotes two caves or two contestants (another policy, version or
-/// parameters), or if both contain flights of the same pair.
+/// Both experiences together; caves and contestants with equal names are identified, and conditions of the
+/// same kind. Throws InputError if flights differ in more than vehicle, sensors, time and team, if one name
+/// denotes two caves or two contestants (another policy, version or parameters), or if both contain flights
+/// of the same contestant in the same cave under the same conditions.
 Experience merged(const Experience& a, const Experience& b, const std::string& source);
 
 /// The experience without one cave: for leave-one-out.
 Experience without_cave(const Experience& experience, std::size_t cave);
+
+/// The most one may explore of the flights at a site: the limit of restricted times.
+inline double horizon_s(const Experience& experience, std::size_t site) {
+  return experience.conditions[experience.sites[site].condition].horizon_s;
+}
 
 /// Throws InputError with file, place and reason.
 Experience read_experience(const std::string& file);

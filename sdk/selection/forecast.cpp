@@ -41,27 +41,27 @@ class CoverageCurve {
   std::vector<std::pair<double, double>> points_{{0, 0}};
 };
 
-/// The figures of a contestant in a cave by name; NaN without flights.
+/// The figures of a contestant at a site by name; NaN without flights.
 struct FlightsThere {
   const Experience& experience;
-  std::size_t contestant, cave;
+  std::size_t contestant, site;
   double operator[](const char* metric) const {
     const auto found = std::find(experience.metrics.begin(), experience.metrics.end(), metric);
     if (found == experience.metrics.end()) return kUnknown;
     const auto m = static_cast<std::size_t>(found - experience.metrics.begin());
-    const Fared& f = experience.at(contestant, cave, m);
+    const Fared& f = experience.at(contestant, site, m);
     return f.flights > 0 ? f.mean : kUnknown;
   }
 };
 
 /// The share of the known flights' speed that this vehicle is allowed; at most 1.
-double pace_of(const Experience& e, const FlightTime& time) {
-  for (const auto& [key, text] : e.flown.mission) {
+double pace_of(const Condition& condition, const FlightTime& time, const std::string& source) {
+  for (const auto& [key, text] : condition.mission) {
     if (key != "motion.max_speed") continue;
     double speed_mps = 0;
     core::OptionTable table;
     table.add(key, speed_mps, "m/s", 1e-3, 1e6, "");
-    table.set(e.source, key, text);
+    table.set(source, key, text);
     return std::min(1.0, time.max_speed_mps / speed_mps);
   }
   return 1;
@@ -81,17 +81,19 @@ struct WeightedMean {
 
 Forecast forecast(const Experience& e, const CaveFigures& cave, const Selected& s, std::size_t contestant,
                   const FlightTime& time) {
-  const double pace = pace_of(e, time);
-  // The known flights had to return too, and kept as much time for it as this one.
-  const double known_s = e.flown.horizon_s - (time.endurance_s - time.explore_s);
   WeightedMean coverage, flight, path, energy;
-  for (const NearCave& n : s.near) {
-    const FlightsThere there{e, contestant, n.cave};
+  for (std::size_t site = 0; site < e.sites.size(); ++site) {
+    const double weight = s.weights.level[site];
+    const FlightsThere there{e, contestant, site};
     const double reached = std::min(there["coverage"], 1 - 1e-6);
-    if (!(n.weight > 0) || std::isnan(reached)) continue;
+    if (!(weight > 0) || std::isnan(reached)) continue;
+    const Condition& condition = e.conditions[e.sites[site].condition];
+    const double pace = pace_of(condition, time, e.source);
+    // The known flights had to return too, and kept as much time for it as this one.
+    const double known_s = condition.horizon_s - (time.endurance_s - time.explore_s);
     const double path_m = there["path_length_m"], speed_mps = there["exploring_speed_mps"];
-    const double flown_s = std::min(path_m / speed_mps, e.flown.horizon_s);  // NaN if it is not known
-    const bool ended_itself = flown_s < kCensored * e.flown.horizon_s;
+    const double flown_s = std::min(path_m / speed_mps, condition.horizon_s);  // NaN if it is not known
+    const bool ended_itself = flown_s < kCensored * condition.horizon_s;
     const double explored_s = std::max(1.0, ended_itself ? std::min(flown_s, known_s) : known_s);
     CoverageCurve curve;
     if (reached > 0.5) curve.add(std::min(there["restricted_t50_s"], explored_s), 0.5);
@@ -99,14 +101,14 @@ Forecast forecast(const Experience& e, const CaveFigures& cave, const Selected& 
     curve.add(explored_s, std::max(0.0, reached));
 
     // One second here is as much of the cave as this many in the known one.
-    const double length_ratio = e.caves[n.cave].figures.length_m / cave.length_m;
+    const double length_ratio = e.caves[e.sites[site].cave].figures.length_m / cave.length_m;
     const double clock = pace * (std::isnan(length_ratio) ? 1 : length_ratio);
-    coverage.add(curve.at(time.explore_s * clock), n.weight);
+    coverage.add(curve.at(time.explore_s * clock), weight);
     const double whole_s = ended_itself ? flown_s : curve.whole_s();
     const double flight_s = std::min(time.flight_s, whole_s / clock + time.flight_s - time.explore_s);
-    flight.add(flight_s, n.weight);
-    path.add(pace * speed_mps * std::max(0.0, flight_s - time.up_down_s), n.weight);
-    energy.add(there["energy_wh"] / flown_s * flight_s, n.weight);
+    flight.add(flight_s, weight);
+    path.add(pace * speed_mps * std::max(0.0, flight_s - time.up_down_s), weight);
+    energy.add(there["energy_wh"] / flown_s * flight_s, weight);
   }
   return {coverage.value(), flight.value(), path.value(), energy.value()};
 }

@@ -251,6 +251,11 @@ int junctions(std::span<const PassageNode> nodes) {
   return n;
 }
 
+int dead_ends(std::span<const PassageNode> nodes) {
+  return static_cast<int>(
+      std::count_if(nodes.begin(), nodes.end(), [](const PassageNode& p) { return degree(p) < 2; }));
+}
+
 int loops(std::span<const PassageNode> nodes) {
   int edges = 0;
   for (const PassageNode& p : nodes) edges += static_cast<int>(p.below.size());

@@ -35,6 +35,8 @@ std::vector<PassageNode> without_short_ends(const std::vector<PassageNode>& node
 
 /// Where more than two ways meet: their number less two, summed; a crossing of four counts as two junctions.
 int junctions(std::span<const PassageNode> nodes);
+/// Places where a passage ends.
+int dead_ends(std::span<const PassageNode> nodes);
 /// Number of independent loops: edges - nodes + 1 of a connected graph.
 int loops(std::span<const PassageNode> nodes);
 

@@ -1,50 +1,67 @@
-// Predicts the results of contestants in a cave from those in other caves: the kernel-weighted mean
-// (Nadaraya, Watson, 1964) of a cave's level and of each contestant's advantage over it.
+// Predicts the results of contestants at a site, a cave under certain conditions, from those at other sites:
+// the kernel-weighted mean (Nadaraya, Watson, 1964) of the sites' level times that of the contestant's
+// advantage, its result over the level of the site.
 #pragma once
+#include <limits>
 #include <vector>
 
 #include "sdk/selection/experience.h"
 
 namespace karst::selection {
 
-/// One metric: one value per contestant and cave, NaN without flights.
+/// Least fraction of the weight in which a contestant must have flown to be predicted.
+inline constexpr double kMinFlownFraction = 0.25;
+
+/// One metric: one value per contestant and site, NaN without flights.
 struct Values {
-  std::size_t contestants, caves;
+  std::size_t contestants, sites;
   std::vector<double> mean, error;  // error of the mean, if known
-  double at(std::size_t k, std::size_t c) const { return mean[k * caves + c]; }
+  double at(std::size_t k, std::size_t s) const { return mean[k * sites + s]; }
 };
 Values values_of(const Experience& experience, std::size_t metric);
 
-/// The level of each cave: the mean over the contestants that flew in every cave, so that levels are
+/// The level of each site: the mean over the contestants that flew at every site, so that levels are
 /// comparable, or over all that flew there if no contestant flew everywhere.
 std::vector<double> levels(const Values& values);
 
-/// NaN for a contestant that flew in too small a fraction of the weight.
-double predict(const Values& values, const std::vector<double>& level, const std::vector<double>& weight,
-               std::size_t contestant);
-
-/// Weights caves by their similarity.
+/// What the weight of a site follows from: the likeness of its cave and of its conditions.
 struct Kernel {
-  std::vector<double> scales;  // of the figures
-  double bandwidth = 0;
+  std::vector<double> scales, weights;  // of the figures; weight 0: the figure does not count
+  double bandwidth = std::numeric_limits<double>::infinity();  // infinity: all caves count alike
+  // What flights under other conditions count: a factor, or the spread of the logarithm in a Gaussian.
+  double other_vehicle = 1, other_sensors = 1;
+  double endurance_spread = std::numeric_limits<double>::infinity();
+  double team_spread = std::numeric_limits<double>::infinity();
 };
 
-/// Weights of the known caves for a cave. Unknown figures count as no difference here: the fewer figures are
-/// known, the less the weights differ.
-std::vector<double> kernel_weights(const std::vector<KnownCave>& caves, const CaveFigures& cave,
-                                   const Kernel& kernel);
+/// Weights of the known caves for a cave, the greatest 1. Unknown figures count as no difference here: the
+/// fewer figures are known, the less the weights differ.
+std::vector<double> cave_weights(const std::vector<KnownCave>& caves, const CaveFigures& cave,
+                                 const Kernel& kernel);
+/// Weights of the conditions for those asked for; what is not given counts as no difference.
+std::vector<double> condition_weights(const std::vector<Condition>& conditions, const AskedConditions& asked,
+                                      const Kernel& kernel);
+/// The same for the level, which always follows the conditions: flights of the same vehicle, sensors and team
+/// if there are any, those of the nearest endurance most.
+std::vector<double> level_weights(const std::vector<Condition>& conditions, const AskedConditions& asked);
 
-/// The predicted quantity: a contestant's value, or its advantage over the cave's level.
-enum class Predicted { value, advantage };
+/// Weights of each site.
+struct SiteWeights {
+  std::vector<double> advantage, level;
+};
+SiteWeights site_weights(const Experience& experience, const CaveFigures& cave, const AskedConditions& asked,
+                         const Kernel& kernel);
 
-/// Residuals of predicting each cave from the others, by contestant and cave; NaN if there is none.
+/// NaN for a contestant that flew in too small a fraction of the weight.
+double predict(const Values& values, const std::vector<double>& level, const SiteWeights& weights,
+               std::size_t contestant);
+
+/// Whether both are the same rock: the same cave, perhaps flown from two starts.
+bool same_rock(const KnownCave& a, const KnownCave& b);
+
+/// Residuals of predicting each site from those of the other caves, by contestant and site; NaN if there is
+/// none.
 std::vector<double> left_out_residuals(const Experience& experience, const Values& values,
-                                       const std::vector<double>& level, const Kernel& kernel,
-                                       Predicted what);
-
-/// The bandwidth with the best predictions of left-out caves, measured by the differences between contestants
-/// relative to the cave's level. Infinity means that the known caves carry no information.
-double best_bandwidth(const Experience& experience, const Values& values, const std::vector<double>& level,
-                      const std::vector<double>& scales);
+                                       const std::vector<double>& level, const Kernel& kernel);
 
 }  // namespace karst::selection

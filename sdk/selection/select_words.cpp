@@ -15,7 +15,6 @@ namespace {
 using core::format_text;
 
 constexpr double kMostOfASample = 0.999;  // 1000 of 1000 resamplings are no certainty
-constexpr double kMaxAlike = 1.5;         // times the weight each cave would have if all had the same
 
 /// Intervals that are not known may overlap.
 bool overlap(const Expected& a, const Expected& b) { return !(a.low > b.high) && !(b.low > a.high); }
@@ -41,10 +40,14 @@ std::string why_far(const Experience& e, const CaveFigures& cave, const NearCave
          text(high) + " in all";
 }
 
-bool likeness_tells_nothing(const Experience& e, const Selected& s) {
-  // With a wide bandwidth all caves have nearly equal weight: similarity of the nearest ones decides nothing.
-  const bool alike = s.near.front().weight < kMaxAlike / static_cast<double>(e.caves.size());
-  return !s.flown && (std::isinf(s.bandwidth) || alike);
+bool likeness_tells_nothing(const Selected& s) { return !s.flown && std::isinf(s.fit.kernel.bandwidth); }
+
+std::string figures_in_words(const Kernel& kernel) {
+  std::string out;
+  for (std::size_t f = 0; f < figure_definitions().size(); ++f)
+    if (!kernel.weights.empty() && kernel.weights[f] > 0)
+      out += (out.empty() ? "" : ", ") + std::string(figure_definitions()[f].name);
+  return out;
 }
 
 std::string confidence_in_words(const Experience& e, const Selected& s) {
@@ -56,28 +59,61 @@ std::string confidence_in_words(const Experience& e, const Selected& s) {
   return out;
 }
 
+std::string runner_up_in_words(const Experience& e, const Selected& s, const std::string& metric) {
+  if (s.ranking.size() < 2) return "";
+  const Expected &first = s.ranking[0], &second = s.ranking[1];
+  return "Runner-up: " + e.contestants[second.contestant].name + ", expected " +
+         metric_value_text(metric, second.value) + " against " + metric_value_text(metric, first.value);
+}
+
+std::string evidence_in_words(const Experience& e, const Selected& s, const SelectOptions& options) {
+  const Evidence& v = s.evidence;
+  std::string out = "It rests on " + core::counted(v.flights, "flight") + " in " + core::counted(v.caves, "cave");
+  if (e.conditions.size() > 1) {
+    out += " under " + std::to_string(e.conditions.size()) + " conditions";
+    if (!s.flown) {
+      const Kernel& k = s.fit.kernel;
+      out += ", " + std::to_string(v.flights_as_asked) + " of them in " +
+             core::counted(v.caves_as_asked, "cave") + " as asked (" + in_words(options.conditions) + ")";
+      if (!options.conditions.vehicle.empty() && k.other_vehicle < 1)
+        out += format_text("; flights of other vehicles count %.0f %%", 100 * k.other_vehicle);
+    }
+  } else {
+    out += ", all of them " + in_words(e.conditions.front());
+    if (v.flights_as_asked == 0) out += "; none was as asked (" + in_words(options.conditions) + ")";
+  }
+  return out;
+}
+
 std::string why_first(const Experience& e, const Selected& s, const SelectOptions& options) {
+  double shortest_s = std::numeric_limits<double>::infinity(), longest_s = 0;
+  for (std::size_t site = 0; site < e.sites.size(); ++site)
+    if (s.weights.advantage[site] > 0) {
+      shortest_s = std::min(shortest_s, horizon_s(e, site));
+      longest_s = std::max(longest_s, horizon_s(e, site));
+    }
   const std::string name = e.contestants[s.ranking.front().contestant].name,
                     metric = metric_words(options.metric) + " (" + options.metric + ")",
-                    flights =
-                        format_text(" The flights lasted at most %g s, in profile ", e.flown.horizon_s) +
-                        e.flown.profile + ".";
+                    lasted = shortest_s < longest_s ? format_text("%g or %g s", shortest_s, longest_s)
+                                                    : format_text("%g s", longest_s),
+                    flights = " The flights lasted at most " + lasted + ", in profile " +
+                              e.conditions.front().profile + ".";
   if (s.flown)
     return name + " did best in " + metric + " in this very cave, among " +
            core::counted(s.ranking.size(), "contestant") + "." + flights;
   std::string out = name + " did best in " + metric + ", on average over the " +
                     core::counted(s.near.size(), "cave") + " flown.";
-  if (likeness_tells_nothing(e, s))
+  if (likeness_tells_nothing(s))
     out +=
         " All caves count alike: when each was left out in turn, those most like it did not foretell which "
         "policy is best there.";
   else
-    out += " Caves that are more like this one count more.";
+    out += " Caves that are more like this one count more, by " + figures_in_words(s.fit.kernel) + ".";
   out += " Most like it:";
   for (std::size_t i = 0; i < s.near.size() && i < 3; ++i)
     out += format_text("%s %s (distance %.2f)", i ? "," : "", e.caves[s.near[i].cave].name.c_str(),
                        s.near[i].distance.value);
-  return out + "." + flights;
+  return out + ". " + evidence_in_words(e, s, options) + "." + flights;
 }
 
 }  // namespace karst::selection

@@ -1,17 +1,23 @@
 #include "sdk/tools/select_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
+#include "core_stack/common/format_text.h"
 #include "core_stack/common/json_text.h"
+#include "core_stack/common/options.h"
 #include "core_stack/common/unit_text.h"
 #include "sdk/evaluation/record/whole_file.h"
 #include "sdk/selection/describe.h"
 #include "sdk/selection/figure_words.h"
+#include "sdk/selection/goal.h"
 #include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
@@ -31,7 +37,8 @@ constexpr std::size_t kManyCaves = 30;  // with fewer caves a fraction may be of
 constexpr int kNothingSimilar = 3;      // exit code: nothing similar was flown
 
 struct SelectArguments {
-  std::string cave, start, out, preset;
+  std::string cave, start, out, preset, battery;
+  std::vector<std::string> goals;  // or metrics
   std::vector<std::string> results, learn;
   selection::SelectOptions options;
   bool json = false, leave_one_out = false;
@@ -65,6 +72,9 @@ void print_sentences(const std::string& text) {
 
 void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
            const SelectArguments& args) {
+  const std::string goal = selection::goal_of(args.options.metric);
+  print_out("Asked: %s%s\n", goal.empty() ? "" : ("for " + goal + ", ").c_str(),
+            in_words(args.options.conditions).c_str());
   print_out("The cave:\n%s", selection::to_text(cave).c_str());
   print_out("%s:\n", s.flown ? "This very cave was flown; all rests on that. Nearest" : "Caves like it");
   for (std::size_t i = 0; i < s.near.size() && i < 5; ++i) {
@@ -98,6 +108,8 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
       print_out("  %-38s %s\n", selection::metric_words(e.metrics[m]).c_str(),
                 selection::metric_value_text(e.metrics[m], figures[m]).c_str());
   print_sentences(s.reason);
+  if (const std::string second = selection::runner_up_in_words(e, s, metric); !second.empty())
+    print_sentences(second + ".");
   print_sentences("Confidence: " + selection::confidence_in_words(e, s) + ".");
 }
 
@@ -114,8 +126,22 @@ ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, co
                  {"reason", s.reason},
                  {"metric", args.options.metric},
                  {"cave", core::json_of<ordered_json>(selection::to_json(cave))}};
+  const selection::AskedConditions& asked = args.options.conditions;
+  j["goal"] = selection::goal_of(args.options.metric);
+  j["conditions"] = ordered_json::object();
+  if (!asked.vehicle.empty()) j["conditions"]["vehicle"] = asked.vehicle;
+  if (!asked.sensors.empty()) j["conditions"]["sensors"] = asked.sensors;
+  if (std::isfinite(asked.endurance_s)) j["conditions"]["endurance_s"] = asked.endurance_s;
+  if (asked.robots > 0) j["conditions"]["robots"] = asked.robots;
+  j["evidence"] = {{"flights", s.evidence.flights},
+                   {"caves", s.evidence.caves},
+                   {"flights_as_asked", s.evidence.flights_as_asked},
+                   {"caves_as_asked", s.evidence.caves_as_asked}};
   j["limit"] = s.limit;
-  j["bandwidth"] = known(s.bandwidth);
+  j["bandwidth"] = known(s.fit.kernel.bandwidth);
+  j["figures"] = ordered_json::array();
+  for (std::size_t f = 0; f < s.fit.kernel.weights.size(); ++f)
+    if (s.fit.kernel.weights[f] > 0) j["figures"].push_back(selection::figure_definitions()[f].name);
   j["near"] = ordered_json::array();
   for (const selection::NearCave& n : s.near)
     j["near"].push_back(
@@ -159,65 +185,142 @@ int select_for(const SelectArguments& args) {
   return 0;
 }
 
-void print_shares(const char* name, const selection::LeaveOneOut::Shares& s) {
-  print_out("  %-28s %5.0f %% %12.0f %% %12.1f %%\n", name, 100 * s.best, 100 * s.within, 100 * s.regret);
+constexpr std::array<const char*, selection::kRules> kRuleWords{
+    "selected",         "by conditions, not the cave", "always the overall best",
+    "best by the goal", "best by the vehicle",         "drawn at random"};
+
+std::string percent(double share) { return core::format_text("%.1f", 100 * share); }
+
+std::string share_words(const selection::Share& s) {
+  return percent(s.mean) + (std::isnan(s.low) ? "" : " (" + percent(s.low) + " to " + percent(s.high) + ")");
 }
 
-void print_answered(const selection::LeaveOneOut& l) {
-  print_out("of the %zu caves that would not be refused\n", l.caves.size() - l.refused);
-  print_shares("selected", l.selected_answered);
-  print_shares("always the overall best", l.overall_answered);
-  print_shares("drawn at random", l.chance_answered);
+void print_rules(const std::array<selection::RuleValue, selection::kRules>& rules) {
+  print_out("  %-28s %20s %20s %20s\n", "%", "is the best", "within 5 %", "lost");
+  for (std::size_t r = 0; r < selection::kRules; ++r)
+    print_out("  %-28s %20s %20s %20s\n", kRuleWords[r], share_words(rules[r].best).c_str(),
+              share_words(rules[r].within).c_str(), share_words(rules[r].lost).c_str());
+}
+
+ordered_json to_json(const selection::Share& s) {
+  return {{"mean", known(s.mean)}, {"low", known(s.low)}, {"high", known(s.high)}};
+}
+
+ordered_json to_json(const std::array<selection::RuleValue, selection::kRules>& rules) {
+  ordered_json j;
+  for (std::size_t r = 0; r < selection::kRules; ++r)
+    j[core::name_of(static_cast<selection::Rule>(r))] = {{"best", to_json(rules[r].best)},
+                                                         {"within_5_percent", to_json(rules[r].within)},
+                                                         {"lost", to_json(rules[r].lost)}};
+  return j;
+}
+
+ordered_json to_json(const Experience& e, const selection::LeaveOneOut& l) {
+  ordered_json j{{"goals", l.metrics}, {"caves", l.caves}, {"refused", l.refused}};
+  j["rules"] = to_json(l.all);
+  j["rules_answered"] = to_json(l.answered);
+  for (std::size_t r = 0; r < selection::kRules; ++r)
+    j["lost_by_selected_over"][core::name_of(static_cast<selection::Rule>(r))] = to_json(l.lost_ratio[r]);
+  j["choices"] = ordered_json::array();
+  for (const selection::LeftOut& c : l.choices) {
+    const selection::Site& site = e.sites[c.site];
+    ordered_json one{{"cave", e.caves[site.cave].name},
+                     {"condition", e.conditions[site.condition].name},
+                     {"metric", e.metrics[c.metric]},
+                     {"nearest", known(c.nearest)},
+                     {"refused", c.refused},
+                     {"best", e.contestants[c.best].name},
+                     {"best_value", c.best_value}};
+    for (std::size_t r = 0; r < selection::kRules; ++r) {
+      const auto rule = static_cast<selection::Rule>(r);
+      one[core::name_of(rule)] = {{"value", c.by[r].value}, {"lost", c.by[r].lost}};
+      if (rule != selection::Rule::chance)
+        one[core::name_of(rule)]["contestant"] = e.contestants[c.by[r].contestant].name;
+    }
+    j["choices"].push_back(one);
+  }
+  return j;
+}
+
+/// One line for each cave: what the choices for it lost on average.
+void print_caves(const Experience& e, const selection::LeaveOneOut& l) {
+  print_out("  %-24s %8s %8s %8s %8s   what is best there, by goal\n", "lost, %", "nearest", "selected",
+            "overall", "random");
+  for (std::size_t c = 0; c < e.caves.size(); ++c) {
+    double selected = 0, overall = 0, chance = 0, nearest = 0;
+    int n = 0;
+    bool refused = false;
+    std::string best;
+    for (const selection::LeftOut& x : l.choices) {
+      if (e.sites[x.site].cave != c) continue;
+      const auto lost = [&](selection::Rule r) { return 100 * x.by[static_cast<std::size_t>(r)].lost; };
+      selected += lost(selection::Rule::selected);
+      overall += lost(selection::Rule::overall);
+      chance += lost(selection::Rule::chance);
+      nearest = x.nearest;
+      refused |= x.refused;
+      ++n;
+      const std::string& name = e.contestants[x.best].name;
+      if (best.find(name) == std::string::npos) best += (best.empty() ? "" : ", ") + name;
+    }
+    if (n == 0) continue;
+    print_out("  %-24s %8.2f %8.1f %8.1f %8.1f   %s%s\n", e.caves[c].name.c_str(), nearest, selected / n,
+              overall / n, chance / n, best.c_str(), refused ? " (would be refused)" : "");
+  }
+}
+
+/// What telling helps: the rows of one goal or of one condition alone.
+void print_parts(const Experience& e, const selection::LeaveOneOut& l) {
+  const auto part = [&](const std::string& name, const auto& counts) {
+    std::vector<selection::LeftOut> some;
+    std::copy_if(l.choices.begin(), l.choices.end(), std::back_inserter(some), counts);
+    if (some.empty()) return;
+    const auto value = value_of(e, some);
+    const auto lost = [&](selection::Rule r) { return percent(value[static_cast<std::size_t>(r)].lost.mean); };
+    print_out("  %-28s %9s %12s %9s %9s\n", name.c_str(), lost(selection::Rule::selected).c_str(),
+              lost(selection::Rule::conditions).c_str(), lost(selection::Rule::overall).c_str(),
+              lost(selection::Rule::chance).c_str());
+  };
+  print_out("  %-28s %9s %12s %9s %9s\n", "lost, %", "selected", "conditions", "overall", "random");
+  for (std::size_t m = 0; m < e.metrics.size(); ++m)
+    part(e.metrics[m], [m](const selection::LeftOut& x) { return x.metric == m; });
+  if (e.conditions.size() < 2) return;
+  for (std::size_t q = 0; q < e.conditions.size(); ++q)
+    part(e.conditions[q].name, [&](const selection::LeftOut& x) { return e.sites[x.site].condition == q; });
 }
 
 void leave_one_out(const SelectArguments& args) {
   const Experience e = experience_of(args);
-  const selection::LeaveOneOut l = selection::leave_one_out(e, args.options, "karst select");
+  std::vector<std::string> metrics;
+  for (const std::string& goal : args.goals) metrics.push_back(selection::metric_for(goal, "karst select"));
+  if (metrics.empty()) metrics = selection::goals_flown(e);
+  const selection::LeaveOneOut l = selection::leave_one_out(e, metrics, "karst select");
   if (args.json) {
-    ordered_json j{{"metric", args.options.metric}, {"caves", ordered_json::array()}, {"refused", l.refused}};
-    for (const selection::LeftOut& c : l.caves)
-      j["caves"].push_back({{"cave", e.caves[c.cave].name},
-                            {"nearest", c.nearest},
-                            {"refused", c.refused},
-                            {"best", e.contestants[c.best].name},
-                            {"best_value", c.best_value},
-                            {"selected", e.contestants[c.selected].name},
-                            {"selected_value", c.selected_value},
-                            {"overall", e.contestants[c.overall].name},
-                            {"overall_value", c.overall_value},
-                            {"chance_value", c.chance_value}});
-    const auto fractions = [&j](const char* name, const selection::LeaveOneOut::Shares& s) {
-      j[name] = {{"best", known(s.best)}, {"within_5_percent", known(s.within)}, {"lost", known(s.regret)}};
-    };
-    fractions("selected", l.selected);
-    fractions("overall_best", l.overall);
-    fractions("chance", l.chance);
-    fractions("selected_answered", l.selected_answered);
-    fractions("overall_best_answered", l.overall_answered);
-    fractions("chance_answered", l.chance_answered);
-    print_json(j);
+    print_json(to_json(e, l));
     return;
   }
-  print_out("Each cave left out in turn, selected for from the others, by %s:\n",
-            args.options.metric.c_str());
-  for (const selection::LeftOut& c : l.caves)
-    print_out("  %-24s nearest %5.2f  best %s %.3g; selected %s %.3g%s; overall best %s %.3g\n",
-              e.caves[c.cave].name.c_str(), c.nearest, e.contestants[c.best].name.c_str(), c.best_value,
-              e.contestants[c.selected].name.c_str(), c.selected_value,
-              c.refused ? " (would be refused)" : "", e.contestants[c.overall].name.c_str(), c.overall_value);
-  print_out("%zu caves               is the best   within 5 %%   lost on average\n", l.caves.size());
-  print_shares("selected", l.selected);
-  print_shares("always the overall best", l.overall);
-  print_shares("drawn at random", l.chance);
-  if (l.refused > 0 && l.refused < l.caves.size()) print_answered(l);
-  print_out(
-      "Within 5 %%: what it found is at least as good as the best there but for 5 %% of that. Lost: the "
-      "share of the best\n"
-      "that was lost. Drawn at random: the mean over all that flew there.\n");
-  if (l.caves.size() < kManyCaves)
-    print_out(
-        "%zu caves are few: by chance alone a share of 50 %% is off by up to %.0f points, 95 times in 100.\n",
-        l.caves.size(), 100 * 1.96 * 0.5 / std::sqrt(static_cast<double>(l.caves.size())));
+  print_out("Each cave left out in turn, selected for from the others: %s, %s, %s, %s\n",
+            core::counted(l.caves, "cave").c_str(), core::counted(e.conditions.size(), "condition").c_str(),
+            core::counted(metrics.size(), "goal").c_str(), core::counted(l.choices.size(), "choice").c_str());
+  print_caves(e, l);
+  print_parts(e, l);
+  print_out("Means over the caves (95 %% interval over the caves):\n");
+  print_rules(l.all);
+  if (l.refused > 0 && l.refused < l.choices.size()) {
+    print_out("of the %zu choices that would not be refused\n", l.choices.size() - l.refused);
+    print_rules(l.answered);
+  }
+  const selection::Share& ratio = l.lost_ratio[static_cast<std::size_t>(selection::Rule::overall)];
+  print_sentences(core::format_text(
+      "Selecting loses %.2f times what the overall best loses (95 %% interval %.2f to %.2f, from caves drawn "
+      "with replacement).",
+      ratio.mean, ratio.low, ratio.high));
+  print_sentences(
+      "Within 5 %: what it found is at least as good as the best there but for 5 % of that. Lost: the share "
+      "of the best that was lost. Drawn at random: the mean over all that flew there.");
+  if (l.caves < kManyCaves)
+    print_out("%zu caves are few: by chance alone a share of 50 %% is off by up to %.0f points, 95 times in 100.\n",
+              l.caves, 100 * 1.96 * 0.5 / std::sqrt(static_cast<double>(l.caves)));
 }
 
 void learn(const SelectArguments& args) {
@@ -226,10 +329,26 @@ void learn(const SelectArguments& args) {
     throw InputError("--out", args.out, "expected a name that ends in .info");
   const Experience e = selection::load_experience(args.learn, tell);
   evaluation::write_whole_file(args.out, selection::to_info(e));
-  print_out("%s: %zu contestants in %zu caves\n", args.out.c_str(), e.contestants.size(), e.caves.size());
+  print_out("%s: %zu contestants in %zu caves, %s\n", args.out.c_str(), e.contestants.size(),
+            e.caves.size(), core::counted(e.conditions.size(), "condition").c_str());
 }
 
-int run(const SelectArguments& args) {
+/// Goal and conditions as asked. Throws InputError.
+void complete(SelectArguments& args) {
+  if (!args.cave.empty() && args.goals.size() > 1)
+    throw InputError("karst select", "--for", "a policy is selected for one goal");
+  if (!args.goals.empty()) args.options.metric = selection::metric_for(args.goals.front(), "karst select --for");
+  selection::AskedConditions& asked = args.options.conditions;
+  if (args.cave.empty() && (!asked.vehicle.empty() || !asked.sensors.empty() || asked.robots > 0 || !args.battery.empty()))
+    throw InputError("karst select", "--vehicle, --sensors, --battery, --team", "go with --cave");
+  if (args.battery.empty()) return;
+  core::OptionTable table;
+  table.add("battery", asked.endurance_s, "s", 6, 1e5, "");
+  table.set("karst select --battery", "battery", args.battery);
+}
+
+int run(SelectArguments args) {
+  complete(args);
   const int wanted = !args.cave.empty() + !args.learn.empty() + args.leave_one_out;
   if (wanted != 1)
     throw InputError("karst select", "", "needs one of --cave FILE, --learn STORE, --leave-one-out");
@@ -249,6 +368,7 @@ void add_select_command(CLI::App& app) {
       "select",
       "Name the policy for a cave, by how policies fared in caves like it\n\n"
       "  karst select --cave caves/new.info --results runs/campaign     a mesh or a cave's .info file\n"
+      "  karst select --for deepest --vehicle camera_uav --battery \"8 min\" --cave caves/new.info\n"
       "  karst select --cave runs/monday/map.bt                         the map of an earlier flight\n"
       "  karst select --cave known.info                                 what a caver knows: width \"4 m\" "
       "...\n"
@@ -263,10 +383,22 @@ void add_select_command(CLI::App& app) {
       ->add_option("--results", args->results, "stores of campaigns, experiences; default: what is installed")
       ->type_name(kFile)
       ->check(not_empty());
-  select->add_option("--metric", args->options.metric, "the figure to do best in")
-      ->type_name(kMetric)
-      ->check(not_empty())
-      ->capture_default_str();
+  std::string names;
+  for (const selection::Goal& g : selection::goals())
+    names += (names.empty() ? "" : ", ") + std::string(g.name) + " (" + std::string(g.meaning) + ")";
+  select
+      ->add_option("--for,--metric", args->goals,
+                   "the goal: " + names + "; or the figure to do best in; default coverage_auc; several with "
+                   "--leave-one-out, default: all that were flown")
+      ->type_name("GOAL")
+      ->check(not_empty());
+  select->add_option("--vehicle", args->options.conditions.vehicle, "such as camera_uav")->check(not_empty());
+  select->add_option("--sensors", args->options.conditions.sensors, "of the vehicle, such as os0_32")
+      ->check(not_empty());
+  select->add_option("--battery", args->battery, "how long a vehicle can fly, such as \"8 min\"")
+      ->check(not_empty());
+  select->add_option("--team", args->options.conditions.robots, "number of vehicles")
+      ->check(CLI::Range(1, 31));
   select->add_option("--level", args->options.level, "of the intervals")
       ->check(number_in(0.5, 0.99))
       ->capture_default_str();

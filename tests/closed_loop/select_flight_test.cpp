@@ -22,15 +22,15 @@ void write(const fs::path& file, const std::string& text) { std::ofstream(file) 
 /// level ones.
 std::string experience() {
   std::string text =
-      "schema karst.experience/2\nflown { horizon \"10 s\" profile campaign }\ncontestant { name near policy "
+      "schema karst.experience/3\nflown { profile campaign }\ncondition { name q horizon \"10 s\" endurance \"10 s\" }\ncontestant { name near policy "
       "nearest_frontier }\n"
       "contestant { name ratio policy unknown_ratio parameters { goals 4 } }\n";
   for (int c = 0; c < 6; ++c) {
     const std::string name = "c" + std::to_string(c), steep = std::to_string(0.1 + 0.12 * c);
     text += "cave { name " + name + " figures { width \"3 m\" verticality " + steep + " } }\n";
-    text += "result { contestant near cave " + name + " coverage_auc \"" + std::to_string(0.6 - 0.05 * c) +
+    text += "result { contestant near cave " + name + " condition q coverage_auc \"" + std::to_string(0.6 - 0.05 * c) +
             " 5 0.01\" }\n";
-    text += "result { contestant ratio cave " + name + " coverage_auc \"" + std::to_string(0.4 + 0.05 * c) +
+    text += "result { contestant ratio cave " + name + " condition q coverage_auc \"" + std::to_string(0.4 + 0.05 * c) +
             " 5 0.01\" }\n";
   }
   return text;

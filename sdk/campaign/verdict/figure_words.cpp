@@ -35,6 +35,10 @@ constexpr std::array kPhrases = {
     Phrase{"surface_imaged", "takes pictures of more of the surface than",
            "takes pictures of less of the surface than", "surface in pictures"},
     Phrase{"depth_m", "comes deeper than", "comes less deep than", "depth reached"},
+    Phrase{"objects_found", "finds more objects than", "finds fewer objects than", "objects found"},
+    Phrase{"objects_reported", "reports more objects than", "reports fewer objects than", "objects reported"},
+    Phrase{"volume_per_wh_m3", "explores more for its energy than", "explores less for its energy than",
+           "volume explored for each watt-hour"},
     Phrase{"min_clearance_m", "keeps farther from rock than", "comes nearer to rock than", "least clearance"},
 };
 

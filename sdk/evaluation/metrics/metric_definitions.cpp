@@ -95,6 +95,8 @@ constexpr std::array kDefinitions = {
                      "free volume of the earlier map, if found"},
     MetricDefinition{"added_volume_m3", "m^3", more, nothing,
                      "explored volume that the earlier map lacks, if found"},
+    MetricDefinition{"volume_per_wh_m3", "m^3", more, nothing,
+                     "explored volume for each watt-hour drawn in flight"},
 };
 
 }  // namespace

@@ -19,12 +19,12 @@ using namespace karst::selection;
 /// One cave of 200 m in which one contestant flew 300 s at 1.5 m/s with 270 W.
 Experience one_cave() {
   Experience e;
-  e.flown = {300, "campaign", {{"motion.max_speed", "2 m/s"}}};
-  e.metrics = learned_metrics();
+  e.conditions = {karst::test::condition()};
+  e.conditions[0].mission = {{"motion.max_speed", "2 m/s"}};
   e.contestants.push_back({"near", "near", "1.0.0", {}});
   e.caves.push_back({"known", karst::test::cave_figures(0, 0.1)});
   e.caves[0].figures.length_m = 200;
-  e.fared.resize(e.metrics.size());
+  lay_out(e, all_sites(e));
   const std::vector<std::pair<std::string, double>> figures{
       {"coverage", 0.8},      {"restricted_t50_s", 100},    {"restricted_t90_s", 300},
       {"path_length_m", 450}, {"exploring_speed_mps", 1.5}, {"energy_wh", 22.5}};
@@ -38,6 +38,7 @@ Experience one_cave() {
 Selected by_that_cave() {
   Selected s;
   s.near.push_back({0, {}, 1});
+  s.weights = {{1}, {1}};
   return s;
 }
 
@@ -128,8 +129,8 @@ TEST(SelectWords, TheReasonSaysThatLikenessToldNothing) {
   Experience e = karst::test::experience(6, 0.3, 0.02, 1);
   Selected s = select(e, karst::test::cave_figures(0, 0.4), {}, "cave");
   s.refused = false;
-  s.bandwidth = std::numeric_limits<double>::infinity();
-  EXPECT_TRUE(likeness_tells_nothing(e, s));
+  s.fit.kernel.bandwidth = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(likeness_tells_nothing(s));
   EXPECT_NE(why_first(e, s, {}).find("did not foretell which policy is best"), std::string::npos);
   EXPECT_EQ(why_first(e, s, {}).find("confidence"), std::string::npos);
 }

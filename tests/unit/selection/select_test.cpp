@@ -10,6 +10,7 @@
 #include "core_stack/common/error.h"
 #include "sdk/campaign/store/store.h"
 #include "sdk/evaluation/metrics/metric_definitions.h"
+#include "sdk/selection/goal.h"
 #include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
@@ -77,7 +78,7 @@ TEST(Select, NamesThePolicyThatDoesWellInCavesLikeIt) {
   EXPECT_EQ(name_of_first(e, level), "level");
   EXPECT_FALSE(steep.refused) << steep.reason;
   EXPECT_GT(steep.confidence, 0.8);
-  EXPECT_LT(steep.bandwidth, 3);
+  EXPECT_LT(steep.fit.kernel.bandwidth, 3);
   EXPECT_EQ(steep.ranking.size(), 3u);
   for (std::size_t i = 1; i < steep.near.size(); ++i)
     EXPECT_LE(steep.near[i - 1].distance.value, steep.near[i].distance.value);
@@ -109,14 +110,19 @@ TEST(Select, IsTheSameEveryTime) {
   EXPECT_EQ(a.confidence, b.confidence);
 }
 
+// The mean level times the mean of what the contestant did relative to the level.
 TEST(Select, OfEqualCavesTheMeanIsExpected) {
   Experience e = experience(6, 0.2, 0, 7);
   for (KnownCave& c : e.caves) c.figures = cave_figures(0, 0.4);
   const Selected s = select(e, cave_figures(0, 0.4), {}, "cave");
   for (const Expected& x : s.ranking) {
-    double mean = 0;
-    for (std::size_t c = 0; c < 6; ++c) mean += e.at(x.contestant, c, 0).mean / 6;
-    EXPECT_NEAR(x.value, mean, 1e-12);
+    double level = 0, relative = 0;
+    for (std::size_t c = 0; c < 6; ++c) {
+      const double there = (e.at(0, c, 0).mean + e.at(1, c, 0).mean + e.at(2, c, 0).mean) / 3;
+      level += there / 6;
+      relative += e.at(x.contestant, c, 0).mean / there / 6;
+    }
+    EXPECT_NEAR(x.value, level * relative, 1e-12);
     EXPECT_NEAR(x.effective_caves, 6, 1e-9);
   }
 }
@@ -129,7 +135,7 @@ TEST(Select, LessIsBetterOfTimes) {
     for (std::size_t k = 0; k < 3; ++k) e.at(k, c, m) = {5, 100.0 + 10 * static_cast<double>(k), 1};
   const Selected s = select(e, cave_figures(0, 0.4), {"restricted_t90_s"}, "cave");
   EXPECT_EQ(name_of_first(e, s), "steep");
-  EXPECT_EQ(s.ranking.back().value, 120);
+  EXPECT_NEAR(s.ranking.back().value, 120, 1e-9);
 }
 
 TEST(Select, IntervalsHoldAsManyCavesAsTheySay) {
@@ -206,6 +212,119 @@ TEST(Select, SharesAreSharesAndTheirIntervalsToo) {
       }
     }
   }));
+}
+
+/// Under the first condition "steep" is the best everywhere, under the second "level".
+Experience two_vehicles(int caves) {
+  Experience e = experience(caves, 0, 0.02, 5);
+  e.conditions.push_back(karst::test::condition("camera_uav", 300));
+  lay_out(e, all_sites(e));
+  karst::core::Random random(3);
+  for (std::size_t s = 0; s < e.sites.size(); ++s) {
+    const bool camera = e.sites[s].condition == 1;
+    const double level = (camera ? 0.2 : 0.6) * random.uniform(0.9, 1.1);
+    const double advantage[] = {camera ? -0.2 : 0.2, camera ? 0.2 : -0.2, 0.0};
+    for (std::size_t k = 0; k < 3; ++k)
+      e.at(k, s, 0) = {4, level * (1 + advantage[k] + 0.02 * random.normal()), 0.01};
+  }
+  return e;
+}
+
+TEST(Select, NamesThePolicyForTheVehicleThatIsAskedFor) {
+  const Experience e = two_vehicles(8);
+  const auto asked = [&](const std::string& vehicle) {
+    return select(e, cave_figures(0.3, 0.4), {.conditions = {.vehicle = vehicle}}, "cave");
+  };
+  const Selected lidar = asked("lidar_uav"), camera = asked("camera_uav"), any = asked("");
+  EXPECT_EQ(name_of_first(e, lidar), "steep");
+  EXPECT_EQ(name_of_first(e, camera), "level");
+  EXPECT_NEAR(lidar.ranking.front().value, 0.72, 0.05);
+  EXPECT_NEAR(camera.ranking.front().value, 0.24, 0.03) << "the level is that of this vehicle";
+  EXPECT_LT(camera.fit.kernel.other_vehicle, 0.2);
+  EXPECT_EQ(camera.evidence.flights, 8u * 2 * 3 * 4);
+  EXPECT_EQ(camera.evidence.flights_as_asked, 8u * 3 * 4);
+  EXPECT_NE(camera.reason.find("It rests on 192 flights in 8 caves under 2 conditions, 96 of them in 8 caves as "
+                               "asked (camera_uav); flights of other vehicles count "),
+            std::string::npos)
+      << camera.reason;
+  EXPECT_EQ(any.evidence.flights_as_asked, any.evidence.flights);
+}
+
+TEST(Select, TheEnduranceDecidesWhereItMatters) {
+  Experience e = experience(8, 0, 0.02, 5);
+  e.conditions = {karst::test::condition("v", 240), karst::test::condition("v", 480)};
+  lay_out(e, all_sites(e));
+  karst::core::Random random(3);
+  for (std::size_t s = 0; s < e.sites.size(); ++s) {
+    const bool is_long = e.sites[s].condition == 1;
+    for (std::size_t k = 0; k < 3; ++k)
+      e.at(k, s, 0) = {4, 0.5 + ((k == 0) != is_long ? 0.1 : 0.0) + 0.01 * random.normal(), 0.01};
+  }
+  const auto first = [&](double endurance_s) {
+    return name_of_first(e, select(e, cave_figures(0, 0.4), {.conditions = {.endurance_s = endurance_s}}, "c"));
+  };
+  EXPECT_EQ(first(240), "steep");
+  EXPECT_EQ(first(200), "steep");
+  EXPECT_NE(first(480), "steep");
+  EXPECT_NE(first(600), "steep");
+}
+
+TEST(Select, RefusesConditionsThatWereNeverFlown) {
+  const Experience e = two_vehicles(8);
+  const auto refusal = [&](const AskedConditions& asked) {
+    const Selected s = select(e, cave_figures(0, 0.4), {.conditions = asked}, "cave");
+    return s.refused ? s.reason : "named";
+  };
+  EXPECT_EQ(refusal({}), "named");
+  EXPECT_EQ(refusal({.vehicle = "lidar_uav", .endurance_s = 500, .robots = 1}), "named");
+  EXPECT_EQ(refusal({.vehicle = "balloon"}),
+            "no flight of the vehicle balloon is known; those of camera_uav, lidar_uav are");
+  EXPECT_EQ(refusal({.endurance_s = 1000}),
+            "no flight of nearly 1000 s is known; those known last at most 300 to 300 s");
+  EXPECT_EQ(refusal({.endurance_s = 90}),
+            "no flight of nearly 90 s is known; those known last at most 300 to 300 s");
+  EXPECT_EQ(refusal({.robots = 3}), "no flight of a team is known");
+}
+
+// Of another vehicle, what was found there is no proof.
+TEST(Select, ACaveThatWasFlownDecidesUnderTheSameConditionsOnly) {
+  Experience e = two_vehicles(8);
+  e.caves[2].hash = "abc";
+  const auto asked = [&](const AskedConditions& conditions) {
+    return select(e, e.caves[2].figures, {.conditions = conditions}, "cave", "abc");
+  };
+  EXPECT_TRUE(asked({.vehicle = "camera_uav", .endurance_s = 310}).flown);
+  EXPECT_FALSE(asked({.vehicle = "camera_uav", .endurance_s = 400}).flown);
+  EXPECT_EQ(name_of_first(e, asked({.vehicle = "camera_uav", .endurance_s = 310})), "level");
+}
+
+TEST(Select, DepthsAreNotBeyondTheEndOfTheCave) {
+  Experience e = experience(8, 0.3, 0.02, 3);
+  for (std::size_t c = 0; c < e.caves.size(); ++c)
+    for (std::size_t k = 0; k < 3; ++k) e.at(k, c, index_of(e, "depth_m")) = {4, 150, 5};
+  CaveFigures cave = cave_figures(-0.9, 0.4);
+  cave.length_m = 120;
+  const Selected s = select(e, cave, {"depth_m"}, "cave");
+  EXPECT_EQ(s.ranking.front().value, 120);
+  EXPECT_LE(s.ranking.front().high, 120);
+}
+
+TEST(Fit, FindsTheFigureThatTells) {
+  const Experience e = experience(24, 0.3, 0.02, 3);  // the slope, and the drop that goes with it
+  const Fit f = fit(e, 0);
+  double others = 0;
+  for (std::size_t i = 0; i < figure_definitions().size(); ++i) {
+    const std::string_view name = figure_definitions()[i].name;
+    if (name != "verticality" && name != "drop") others += f.kernel.weights[i];
+  }
+  EXPECT_EQ(others, 0);
+  EXPECT_LT(f.error, 0.3 * f.error_all_alike);
+}
+
+TEST(Fit, WhereNothingTellsMostlyAllCavesCountAlike) {
+  int alike = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) alike += std::isinf(fit(experience(20, 0, 0.1, seed), 0).kernel.bandwidth);
+  EXPECT_GE(alike, 10);
 }
 
 TEST(Select, RefusesWhatIsUnlikeAllThatWasFlownAndNamesWhy) {
@@ -344,13 +463,13 @@ TEST(Select, BadInputIsAnError) {
 }
 
 TEST(LeaveOneOut, SelectingIsWorthItWhereCavesTell) {
-  const LeaveOneOut l = leave_one_out(experience(24, 0.3, 0.03, 11), {}, "test");
-  EXPECT_EQ(l.caves.size(), 24u);
-  EXPECT_GT(l.selected.within, 0.75);
-  EXPECT_GT(l.selected.within, l.overall.within + 0.2);
-  EXPECT_GT(l.selected.within, l.chance.within + 0.2);
-  EXPECT_LT(l.selected.regret, l.overall.regret);
-  EXPECT_NEAR(l.chance.best, 1.0 / 3, 1e-9);
+  const LeaveOneOut l = leave_one_out(experience(24, 0.3, 0.03, 11), {"coverage_auc"}, "test");
+  EXPECT_EQ(l.caves, 24u);
+  EXPECT_GT(l.of(Rule::selected).within.mean, 0.75);
+  EXPECT_GT(l.of(Rule::selected).within.mean, l.of(Rule::overall).within.mean + 0.2);
+  EXPECT_GT(l.of(Rule::selected).within.mean, l.of(Rule::chance).within.mean + 0.2);
+  EXPECT_LT(l.of(Rule::selected).lost.mean, l.of(Rule::overall).lost.mean);
+  EXPECT_NEAR(l.of(Rule::chance).best.mean, 1.0 / 3, 1e-9);
 }
 
 TEST(LeaveOneOut, WhereCavesTellNothingItIsNearlyAsGoodAsTheOverallBest) {
@@ -359,8 +478,8 @@ TEST(LeaveOneOut, WhereCavesTellNothingItIsNearlyAsGoodAsTheOverallBest) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Experience e = experience(15, 0, 0.1, seed);
     for (std::size_t c = 0; c < e.caves.size(); ++c) e.at(2, c, 0).mean *= 1.1;
-    const LeaveOneOut l = leave_one_out(e, {}, "test");
-    selected += l.selected.regret / 10, overall += l.overall.regret / 10;
+    const LeaveOneOut l = leave_one_out(e, {"coverage_auc"}, "test");
+    selected += l.of(Rule::selected).lost.mean / 10, overall += l.of(Rule::overall).lost.mean / 10;
   }
   EXPECT_LT(selected, overall + 0.02);
 }
@@ -369,25 +488,97 @@ TEST(LeaveOneOut, ByHandInFiveCaves) {
   // Five caves that are all alike; "a" is best in four, "b" in the fifth. Left out, the others name "a" every
   // time.
   Experience e;
-  e.metrics = learned_metrics();
   e.contestants = {{"a", "a", "1", {}}, {"b", "b", "1", {}}};
+  e.conditions = {karst::test::condition()};
   for (int c = 0; c < 5; ++c) e.caves.push_back({"c" + std::to_string(c), cave_figures(0.01 * c, 0.4)});
-  e.fared.resize(2 * 5 * e.metrics.size());
+  lay_out(e, all_sites(e));
   for (std::size_t c = 0; c < 5; ++c)
     e.at(0, c, 0) = {3, 0.5, 0.0}, e.at(1, c, 0) = {3, c == 4 ? 0.55 : 0.48, 0.0};
-  const LeaveOneOut l = leave_one_out(e, {}, "test");
-  EXPECT_NEAR(l.selected.best, 0.8, 1e-12);
-  EXPECT_NEAR(l.selected.within, 0.8, 1e-12);
-  EXPECT_NEAR(l.selected.regret, 0.05 / 0.55 / 5, 1e-12);
-  EXPECT_NEAR(l.chance.best, 0.5, 1e-12);
-  EXPECT_NEAR(l.chance.within, (4 * 1.0 + 0.5) / 5, 1e-12);  // 0.48 is within 5 % of 0.5
+  const LeaveOneOut l = leave_one_out(e, {"coverage_auc"}, "test");
+  EXPECT_NEAR(l.of(Rule::selected).best.mean, 0.8, 1e-12);
+  EXPECT_NEAR(l.of(Rule::selected).within.mean, 0.8, 1e-12);
+  EXPECT_NEAR(l.of(Rule::selected).lost.mean, 0.05 / 0.55 / 5, 1e-12);
+  EXPECT_NEAR(l.of(Rule::chance).best.mean, 0.5, 1e-12);
+  EXPECT_NEAR(l.of(Rule::chance).within.mean, (4 * 1.0 + 0.5) / 5, 1e-12);  // 0.48 is within 5 % of 0.5
   try {
-    leave_one_out(without_cave(e, 0), {}, "test");  // three others are too few
+    leave_one_out(without_cave(e, 0), {"coverage_auc"}, "test");  // three others are too few
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("is known of 4 caves; 5 at least are needed"), std::string::npos)
         << error.what();
   }
+}
+
+// Two vehicles, two goals, by hand: which rule sees what.
+TEST(LeaveOneOut, RulesSeeWhatTheyAreToldOnly) {
+  Experience e = two_vehicles(6);
+  const std::size_t depth = index_of(e, "depth_m");
+  for (std::size_t s = 0; s < e.sites.size(); ++s)
+    for (std::size_t k = 0; k < 3; ++k) e.at(k, s, depth) = {4, k == 2 ? 100.0 : 50.0, 1};  // "both" is best
+  const LeaveOneOut l = leave_one_out(e, {"coverage_auc", "depth_m"}, "test");
+  EXPECT_EQ(l.caves, 6u);
+  EXPECT_EQ(l.choices.size(), 24u);
+  EXPECT_NEAR(l.of(Rule::selected).lost.mean, 0, 1e-12);
+  EXPECT_NEAR(l.of(Rule::conditions).lost.mean, 0, 1e-12);
+  // "both" loses 1/6 of the coverage and none of the depth; the best of a vehicle half of the depth.
+  EXPECT_NEAR(l.of(Rule::overall).lost.mean, 0.5 / 6, 0.02);
+  EXPECT_NEAR(l.of(Rule::vehicle).lost.mean, 0.5 / 6, 0.02);
+  EXPECT_LE(l.of(Rule::goal).lost.mean, 0.5 / 3);
+  EXPECT_NEAR(l.of(Rule::chance).lost.mean, (0.5 * 2 / 3 + (1 / 3.0 + 1 / 6.0) / 3) / 2, 0.02);
+  EXPECT_NEAR(l.lost_ratio[static_cast<std::size_t>(Rule::overall)].mean, 0, 1e-9);
+  EXPECT_GE(l.of(Rule::overall).lost.high, l.of(Rule::overall).lost.mean);
+}
+
+// Other starts in a cave would foretell what happens there.
+TEST(LeaveOneOut, TheSameRockIsOneCave) {
+  Experience e = experience(12, 0.3, 0.02, 3);
+  for (std::size_t c = 0; c < e.caves.size(); ++c) e.caves[c].hash = "mesh" + std::to_string(c / 2);
+  EXPECT_TRUE(same_rock(e.caves[0], e.caves[1]));
+  EXPECT_FALSE(same_rock(e.caves[1], e.caves[2]));
+  const Values v = values_of(e, 0);
+  Kernel near = fit(e, 0).kernel;
+  near.weights.assign(figure_definitions().size(), 1.0);
+  near.bandwidth = 0.35;
+  e.caves[1].figures = e.caves[0].figures;
+  const double before = left_out_residuals(e, v, levels(v), near)[0];
+  e.at(0, 1, 0).mean += 0.2;  // of the same rock: must not matter
+  const Values w = values_of(e, 0);
+  std::vector<double> level = levels(v);
+  EXPECT_EQ(left_out_residuals(e, w, level, near)[0], before);
+}
+
+TEST(Goals, StandForFigures) {
+  EXPECT_EQ(metric_for("deepest", "test"), "depth_m");
+  EXPECT_EQ(metric_for("restricted_t90_s", "test"), "restricted_t90_s");
+  EXPECT_EQ(goal_of("surface_imaged"), "walls");
+  for (const Goal& g : goals())
+    EXPECT_NE(std::find(learned_metrics().begin(), learned_metrics().end(), g.metric), learned_metrics().end())
+        << g.name;
+  try {
+    metric_for("deepst", "test");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean deepest?"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Condition, FollowsFromTheSettings) {
+  Condition c;
+  c.horizon_s = 500;
+  c.mission = {{"simulator.vehicle", "lidar_uav"},
+               {"simulator.battery_minutes", "8 min"},
+               {"simulator.lidar.unit", "os0_32"},
+               {"team.robots", "3"}};
+  complete(c, "3600 s", "test");
+  EXPECT_EQ(c.endurance_s, 480);
+  EXPECT_EQ(c.robots, 3);
+  EXPECT_EQ(c.name, "lidar_uav_os0_32_480s_team3");
+  EXPECT_EQ(in_words(c), "lidar_uav (os0_32), 480 s, a team of 3");
+  Condition shorter = c;
+  shorter.endurance_s = 0;
+  complete(shorter, "300 s", "test");
+  EXPECT_EQ(shorter.endurance_s, 300);
+  EXPECT_THROW(complete(shorter = {.horizon_s = 1}, "soon", "test"), InputError);
 }
 
 karst::campaign::CampaignResults results() {
@@ -430,9 +621,9 @@ TEST(Experience, OfACampaignHoldsMeansAndCountsFailures) {
   const auto t90 = static_cast<std::size_t>(
       std::find(e.metrics.begin(), e.metrics.end(), "restricted_t90_s") - e.metrics.begin());
   EXPECT_EQ(e.at(0, 0, t90).mean, 300);
-  EXPECT_EQ(e.flown.horizon_s, 300);
-  EXPECT_EQ(e.flown.profile, "campaign");
-  EXPECT_EQ(e.flown.mission, results().shared);
+  EXPECT_EQ(e.conditions[0].horizon_s, 300);
+  EXPECT_EQ(e.conditions[0].profile, "campaign");
+  EXPECT_EQ(e.conditions[0].mission, results().shared);
 }
 
 TEST(Experience, StoreWithoutDescribedCavesIsAnError) {
@@ -503,7 +694,7 @@ contestant { name near settings "{}"
   EXPECT_NEAR(e.caves[0].figures.width_m, 3, 0.1);
   const std::vector<std::pair<std::string, std::string>> shared{{"vehicle", "lidar_uav"},
                                                                 {"mission.landing_speed", "0.4 m/s"}};
-  EXPECT_EQ(e.flown.mission, shared);
+  EXPECT_EQ(e.conditions[0].mission, shared);
   ASSERT_EQ(told.size(), 3u);
   EXPECT_EQ(told[0], "describing box");
   EXPECT_NE(told[2].find("gone.ply"), std::string::npos) << told[2];
@@ -534,7 +725,7 @@ TEST(Experience, SurvivesItsFile) {
   e.caves[2].name = "a cave; with \"quotes\"";
   e.caves[3].figures.loops = kUnknown;
   e.caves[1].hash = std::string(64, 'a');
-  e.flown.horizon_s = 1234.56789;
+  e.conditions[0].horizon_s = 1234.56789;
   e.at(1, 2, 3) = {1, 0.25, kUnknown};
   const std::string text = to_info(e);
   const Experience f = read_experience(written("whole.info", text));
@@ -542,15 +733,16 @@ TEST(Experience, SurvivesItsFile) {
   EXPECT_EQ(f.caves[2].name, e.caves[2].name);
   EXPECT_TRUE(std::isnan(f.caves[3].figures.loops));
   EXPECT_EQ(f.caves[1].hash, e.caves[1].hash);
-  EXPECT_EQ(f.flown.horizon_s, 1234.56789);
-  EXPECT_EQ(difference(e.flown, f.flown), "");
+  EXPECT_EQ(f.conditions[0].horizon_s, 1234.56789);
+  EXPECT_EQ(difference(e.conditions[0], f.conditions[0]), "");
   EXPECT_EQ(f.at(1, 2, 3).mean, 0.25);
   EXPECT_TRUE(std::isnan(f.at(1, 2, 3).deviation));
   EXPECT_EQ(f.at(0, 0, 1).flights, 0);
 }
 
 TEST(Experience, BadFilesAreErrors) {
-  const std::string flown = "schema karst.experience/2\nflown { horizon \"300 s\" profile campaign }\n",
+  const std::string flown = "schema karst.experience/3\nflown { profile campaign }\n"
+      "condition { name q horizon \"300 s\" endurance \"300 s\" }\n",
                     head = flown + "cave { name a }\ncontestant { name k policy p }\n";
   const auto message = [&](const std::string& text) -> std::string {
     try {
@@ -561,20 +753,20 @@ TEST(Experience, BadFilesAreErrors) {
     return "accepted";
   };
   EXPECT_EQ(message(head), "accepted");
-  EXPECT_NE(message("width 4\n").find("expected karst.experience/2"), std::string::npos);
+  EXPECT_NE(message("width 4\n").find("expected karst.experience/3"), std::string::npos);
   EXPECT_NE(message(flown).find("no cave or no contestant"), std::string::npos);
   EXPECT_NE(message(head + "cave { name a }\n").find("a: is there twice"), std::string::npos);
   EXPECT_NE(message(head + "cavee { name b }\n").find("did you mean cave?"), std::string::npos);
   EXPECT_NE(message(head + "cave { name b figures { widht 4 } }\n").find("did you mean width?"),
             std::string::npos);
   EXPECT_NE(message(head + "contestant { name l }\n").find("lacks its policy"), std::string::npos);
-  EXPECT_NE(message(head + "result { contestant k cave z coverage \"1 1\" }\n").find("no such cave: z"),
+  EXPECT_NE(message(head + "result { contestant k cave z condition q coverage \"1 1\" }\n").find("no such cave: z"),
             std::string::npos);
   EXPECT_NE(
-      message(head + "result { contestant k cave a cover \"1 1\" }\n").find("result.cover: no such figure"),
+      message(head + "result { contestant k cave a condition q cover \"1 1\" }\n").find("result.cover: no such figure"),
       std::string::npos);
   for (const char* bad : {"many", "0.5", "0.5 0", "0.5 -2", "nan 3", "0.5 3 -1", "0.5 3 0.1 7", "0.5 3 x"})
-    EXPECT_NE(message(head + "result { contestant k cave a coverage \"" + bad + "\" }\n")
+    EXPECT_NE(message(head + "result { contestant k cave a condition q coverage \"" + bad + "\" }\n")
                   .find("expected \"mean flights"),
               std::string::npos)
         << bad;
@@ -591,29 +783,60 @@ std::string message_of(const std::string& text) {
 
 // As it was: a file told neither horizon nor profile.
 TEST(Experience, FileThatDoesNotTellHowItWasFlownSaysHowToMakeANewOne) {
-  const std::string old = "schema karst.experience/1\ncave { name a }\ncontestant { name k policy p }\n";
-  EXPECT_NE(message_of(old).find("karst select --learn STORE --out"), std::string::npos) << message_of(old);
+  for (const char* schema : {"karst.experience/1", "karst.experience/2"}) {
+    const std::string old = std::string("schema ") + schema +
+                            "\nflown { horizon \"300 s\" profile campaign }\ncave { name a }\n"
+                            "contestant { name k policy p }\n";
+    EXPECT_NE(message_of(old).find("karst.experience/3 does: make it anew from the campaign: karst select "
+                                   "--learn STORE --out"),
+              std::string::npos)
+        << message_of(old);
+  }
   const std::string rest = "cave { name a }\ncontestant { name k policy p }\n",
-                    head = "schema karst.experience/2\n" + rest;
+                    head = "schema karst.experience/3\n" + rest,
+                    flown = head + "flown { profile campaign }\n";
   EXPECT_NE(message_of(head).find("flown: expected one such block"), std::string::npos);
-  EXPECT_NE(message_of(head + "flown { profile campaign }\n").find("flown: lacks its horizon"),
+  EXPECT_NE(message_of(flown).find("holds no condition"), std::string::npos);
+  EXPECT_NE(message_of(head + "flown { }\n").find("flown: lacks its profile"), std::string::npos);
+  EXPECT_NE(message_of(head + "flown { horizon \"5 min\" }\n").find("flown.horizon: no such key"),
             std::string::npos);
-  EXPECT_NE(message_of(head + "flown { horizon \"5 min\" }\n").find("flown: lacks its profile"),
-            std::string::npos);
-  EXPECT_NE(message_of(head + "flown { horizn 300 }\n").find("did you mean horizon?"), std::string::npos);
-  for (const char* bad : {"-300 s", "0", "nan", "3 m"})
-    EXPECT_NE(message_of(head + "flown { horizon \"" + bad + "\" }\n").find("flown: horizon: expected"),
+  const auto condition = [&](const std::string& keys) { return message_of(flown + "condition { " + keys + " }\n"); };
+  EXPECT_EQ(condition("name q horizon \"5 min\" endurance \"5 min\" robots 3 vehicle v sensors s"), "accepted");
+  EXPECT_NE(condition("horizon \"5 min\"").find("condition: lacks its name"), std::string::npos);
+  EXPECT_NE(condition("name q endurance \"5 min\"").find("condition q: lacks its horizon"), std::string::npos);
+  EXPECT_NE(condition("name q horizon \"5 min\"").find("condition q: lacks its endurance"), std::string::npos);
+  EXPECT_NE(condition("name q horizn 300").find("did you mean horizon?"), std::string::npos);
+  for (const char* bad : {"robots 0", "robots -2", "robots many", "robots 1.5"})
+    EXPECT_NE(condition(std::string("name q horizon \"5 min\" endurance \"5 min\" ") + bad)
+                  .find("condition q: robots: expected"),
               std::string::npos)
         << bad;
+  for (const char* bad : {"-300 s", "0", "nan", "3 m"})
+    EXPECT_NE(condition(std::string("name q horizon \"") + bad + "\"").find("condition q: horizon: expected"),
+              std::string::npos)
+        << bad;
+  const std::string both = "condition { name q horizon \"5 min\" endurance \"5 min\" vehicle v }\n";
+  EXPECT_NE(message_of(flown + both + both).find("q: is there twice"), std::string::npos);
+  EXPECT_NE(message_of(flown + both + "condition { name r horizon 300 endurance 300 vehicle v }\n")
+                .find("r: is the same condition as q"),
+            std::string::npos)
+      << message_of(flown + both + "condition { name r horizon 300 endurance 300 vehicle v }\n");
+  EXPECT_NE(message_of(flown + both + "result { contestant k cave a coverage \"1 1\" }\n")
+                .find("result of k in a: lacks its condition"),
+            std::string::npos);
+  EXPECT_NE(message_of(flown + both + "result { contestant k cave a condition z coverage \"1 1\" }\n")
+                .find("no such condition: z"),
+            std::string::npos);
 }
 
 // As it was: a coverage of 7 was believed.
 TEST(Experience, ImpossibleFiguresAreErrors) {
   const std::string head =
-      "schema karst.experience/2\nflown { horizon \"300 s\" profile campaign }\n"
+      "schema karst.experience/3\nflown { profile campaign }\n"
+      "condition { name q horizon \"300 s\" endurance \"300 s\" }\n"
       "cave { name a }\ncontestant { name k policy p }\n";
   const auto result = [&](const std::string& figure) {
-    return message_of(head + "result { contestant k cave a " + figure + " }\n");
+    return message_of(head + "result { contestant k cave a condition q " + figure + " }\n");
   };
   for (const char* good : {"coverage \"1 1\"", "coverage \"0 2 0\"", "coverage \"0.5 2 0.707107\"",
                            "restricted_t90_s \"300 3 0\"", "path_length_m \"900 3 1200\""})
@@ -672,13 +895,13 @@ TEST(Experience, FlownOtherwiseIsNotMixed) {
     return "accepted";
   };
   EXPECT_EQ(message([](Experience&) {}), "accepted");
-  EXPECT_NE(message([](Experience& e) { e.flown.horizon_s = 60; }).find("horizon 60.0 s here, 300.0 s there"),
+  EXPECT_NE(message([](Experience& e) { e.conditions[0].horizon_s = 60; }).find("horizon 60.0 s here, 300.0 s there"),
             std::string::npos);
   EXPECT_NE(
-      message([](Experience& e) { e.flown.profile = "full"; }).find("profile full here, campaign there"),
+      message([](Experience& e) { e.conditions[0].profile = "full"; }).find("profile full here, campaign there"),
       std::string::npos);
   EXPECT_NE(message([](Experience& e) {
-              e.flown.mission[1].second = "1 m/s";
+              e.conditions[0].mission[1].second = "1 m/s";
             }).find("motion.max_speed 1 m/s here, 1.5 m/s there"),
             std::string::npos);
   EXPECT_NE(
@@ -690,8 +913,19 @@ TEST(Experience, FlownOtherwiseIsNotMixed) {
               e.contestants[0].parameters.put("reach", "5 m");
             }).find("parameters reach=5 m here, reach=3 m there"),
             std::string::npos);
+  // Other vehicles and times are other conditions: they stand side by side.
+  Experience camera = a;
+  camera.conditions[0] = karst::test::condition("camera_uav", 480);
+  const Experience both = merged(a, camera, "other");
+  EXPECT_EQ(both.conditions.size(), 2u);
+  EXPECT_EQ(both.caves.size(), 5u);
+  EXPECT_EQ(both.sites.size(), 10u);
+  EXPECT_EQ(both.at(1, 7, 0).mean, a.at(1, 2, 0).mean);
+  EXPECT_EQ(to_info(read_experience(written("both.info", to_info(both)))), to_info(both));
+  camera.conditions[0].mission[1].second = "1 m/s";
+  EXPECT_THROW(merged(a, camera, "other"), InputError);
   // A setting that one of them does not have yet.
-  EXPECT_EQ(message([](Experience& e) { e.flown.mission.emplace_back("simulator.haze", "0"); }), "accepted");
+  EXPECT_EQ(message([](Experience& e) { e.conditions[0].mission.emplace_back("simulator.haze", "0"); }), "accepted");
 }
 
 TEST(Preset, SurvivesItsFileAndRefusesAnythingElse) {
