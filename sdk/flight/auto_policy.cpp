@@ -1,5 +1,6 @@
 #include "sdk/flight/auto_policy.h"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -9,6 +10,7 @@
 #include "core_stack/common/shell_word.h"
 #include "sdk/flight/auto_options.h"
 #include "sdk/selection/describe.h"
+#include "sdk/selection/free_space.h"
 #include "sdk/selection/goal.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
@@ -114,6 +116,35 @@ selection::CaveFigures known_of(const Mission& m, const AutoOptions& o) {
   return selection::describe_file(o.description, "").figures;
 }
 
+/// What is known of the cave once a part of it is mapped.
+selection::CaveFigures with_part(selection::CaveFigures known, const core::VoxelMap& map) {
+  const selection::CaveFigures part = selection::told_by_part(
+      selection::describe(selection::free_space_of(map, {}, "the map of this flight")));
+  for (const selection::FigureDefinition& f : selection::figure_definitions())
+    if (!std::isnan(part.*f.value)) known.*f.value = part.*f.value;
+  return known;
+}
+
+/// The same selection again, by what the map shows then.
+PolicyReview review_of(const Mission& m, const AutoOptions& o, const selection::Experience& e,
+                       const selection::CaveFigures& known) {
+  return {o.reconsider_s,
+          [=, file = m.file, given = m.policy_parameters](const core::VoxelMap& map)
+              -> std::pair<std::optional<LaterPolicy>, std::string> {
+            try {
+              const selection::Selected s = selection::select(e, with_part(known, map), o.select, file);
+              if (s.refused) return {std::nullopt, s.reason};
+              const selection::Preset& first = e.contestants[s.ranking.front().contestant];
+              LaterPolicy later{o.reconsider_s, first.policy, given, s.reason};
+              for (const auto& [key, value] : first.parameters)
+                if (later.parameters.count(key) == 0) later.parameters.push_back({key, value});
+              return {later, s.reason};
+            } catch (const InputError& error) {  // in the air the first policy goes on
+              return {std::nullopt, error.what()};
+            }
+          }};
+}
+
 }  // namespace
 
 selection::AskedConditions conditions_of(const Mission& m) {
@@ -130,13 +161,22 @@ void choose_policy(Mission& m) {
   o.select.metric = selection::metric_for(o.select.metric, m.file + ": policy.auto.metric");
   o.select.conditions = conditions_of(m);
   if (found_in_table(m)) return;
-  const selection::CaveFigures figures = known_of(m, o);
+  const bool unknown = o.reconsider_s > 0 && o.description.empty() && o.survey.empty();
+  if (unknown && (o.otherwise.empty() || o.otherwise == kAutoPolicy))
+    throw InputError(m.file, "policy.auto.otherwise",
+                     "names the policy until policy.auto.reconsider, as nothing is known of the cave before");
+  if (o.reconsider_s > 0 && !o.survey.empty())
+    throw InputError(m.file, "policy.auto.reconsider",
+                     "is of no use with policy.auto.survey: the survey tells more than the first of a map");
+  const selection::CaveFigures figures = unknown ? selection::CaveFigures{} : known_of(m, o);
   const std::string results = o.results.empty() ? selection::installed_experience() : o.results;
   if (results.empty())
     throw InputError(m.file, "policy.auto.results",
                      "no experience is installed: name a store or an experience");
   const selection::Experience e = selection::load_experience(
       {results}, [](const std::string& s) { print_wrapped(stderr, 2, "%s\n", s.c_str()); });
+  if (o.reconsider_s > 0) m.review = review_of(m, o, e, figures);
+  if (unknown) return take(m, o.otherwise, {}, "otherwise: nothing is known of the cave yet");
   const selection::Selected s =
       selection::select(e, figures, o.select, m.file,
                         o.survey.empty() ? "" : selection::mesh_hash_of(o.survey, o.survey_start));

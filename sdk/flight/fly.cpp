@@ -55,6 +55,25 @@ void refuse_for_team(const FlightRequest& request) {
     throw core::InputError("karst fly", "--live", "a team cannot be followed: fly a single vehicle");
 }
 
+void refuse_second_policy(const Mission& mission, const FlightRequest& request) {
+  if (!mission.later && !mission.review) return;
+  const char* key = mission.later ? "policy.later" : "policy.auto.reconsider";
+  if (is_team(mission)) throw core::InputError(mission.file, key, "is for a single vehicle, not for a team");
+  if (request.record_requests)
+    throw core::InputError("karst fly", "--record-requests", "records one policy: leave it or " + std::string(key) + " out");
+  if (mission.review && request.clock == core::Clock::real_time)
+    throw core::InputError("karst fly", "--real-time",
+                           "describing the map takes a second in which no decision is made: leave " +
+                               std::string(key) + " out");
+}
+
+/// The mission with another policy.
+Mission with_policy(Mission mission, const LaterPolicy& later) {
+  mission.policy = later.policy;
+  mission.policy_parameters = later.parameters;
+  return mission;
+}
+
 /// Warns if the radio's range differs from the range the robots assume when they choose landing sites.
 void compare_radio_with_belief(const Mission& mission) {
   const std::string believed = mission.resolved.get("homing.landing.link.range", "");
@@ -91,6 +110,7 @@ struct MissionFlight::Running {
   Vehicles vehicles;
   std::vector<std::unique_ptr<RecordedVehicle>> recorded;  // with record.scans
   std::optional<host::RecordingPolicy> recording;
+  std::optional<SuccessivePolicies> successive;
   std::optional<TeamFlight> team;
   std::optional<Lockstep> lockstep;
 };
@@ -103,7 +123,11 @@ MissionFlight::MissionFlight(const Mission& mission, const FlightRequest& reques
       request_(request),
       members_(missions_of_members(mission_)) {
   if (is_team(mission_)) refuse_for_team(request_);
+  refuse_second_policy(mission_, request_);
   loaded_ = load_policies(members_, request_);
+  if (mission_.later)
+    later_ = host::load_policy(
+        policy_choice(with_policy(mission_, *mission_.later), request_, loaded_.isolation));
   if (is_team(mission_)) key_ = radio_key(mission_);
 }
 
@@ -166,6 +190,7 @@ std::vector<Seat> MissionFlight::seats() const {
     Seat seat{&r.vehicles[i], loaded_.policies[i].get(), r.recorders[i].get()};
     if (!r.recorded.empty()) seat.vehicle = r.recorded[i].get();
     if (r.recording) seat.policy = &*r.recording;
+    if (r.successive) seat.policy = &*r.successive;
     if (r.team) {
       seat.teamwork = &r.team->teamwork(i);
       seat.starts_at = r.team->starts_at(i);
@@ -212,7 +237,30 @@ void MissionFlight::assemble() {
       r.recording.emplace(policy, request_.run_dir / host::kRequestLogName,
                           host::RequestLogHeader{policy.name(), policy.version(), policy_seed(mission_),
                                                  policy.parameters()});
+    if (mission_.later || mission_.review)
+      r.successive.emplace(
+          policy, core::from_seconds(mission_.later ? mission_.later->after_s : mission_.review->after_s),
+          [this](const core::DecisionRequest& request) { return successor(request); });
     r.lockstep.emplace(mission_.core, how, seats());
+  }
+}
+
+/// The policy that takes over now. What a review chose is kept as policy.later, so that the flight can be
+/// repeated without it.
+Successor MissionFlight::successor(const core::DecisionRequest& request) {
+  if (later_) return {std::move(later_), mission_.later->selection};
+  auto [chosen, reason] = mission_.review->choose(*request.map);
+  if (!chosen) return {nullptr, reason};
+  const host::HostedPolicy& first = *loaded_.policies.front();
+  try {
+    std::unique_ptr<host::HostedPolicy> next =
+        host::load_policy(policy_choice(with_policy(mission_, *chosen), request_, loaded_.isolation));
+    if (next->name() == first.name() && next->parameters() == first.parameters()) return {nullptr, reason};
+    chosen->parameters = next->parameters();
+    mission_.later = std::move(chosen);
+    return {std::move(next), reason};
+  } catch (const core::InputError& e) {
+    return {nullptr, e.what()};
   }
 }
 
@@ -317,6 +365,8 @@ FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
   try {
     const auto begin = std::chrono::steady_clock::now();
     const core::TimeNs end = run(interrupted);
+    if (mission_.review && mission_.later)
+      write_mission(request_.run_dir / "mission.info", as_flown(mission_));
     if (running_->team) outcome.team = running_->team->result(*running_->lockstep, end);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     outcome.metrics =
@@ -332,6 +382,7 @@ FlightOutcome MissionFlight::fly(const std::atomic<bool>& interrupted) {
 }
 
 bool MissionFlight::hangs() const {
+  if (running_ && running_->successive && running_->successive->abandoned()) return true;
   return std::any_of(loaded_.policies.begin(), loaded_.policies.end(),
                      [](const auto& p) { return p->abandoned(); });
 }

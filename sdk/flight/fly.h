@@ -14,6 +14,7 @@
 #include "sdk/flight/flight_setup.h"
 #include "sdk/flight/loaded_policies.h"
 #include "sdk/flight/service_manager.h"
+#include "sdk/flight/successive_policies.h"
 #include "sdk/flight/team_flight.h"
 
 namespace karst::flight {
@@ -58,6 +59,7 @@ class MissionFlight {
   void assemble();
   std::vector<Seat> seats() const;
   RealTime real_time();
+  Successor successor(const core::DecisionRequest& request);
   core::TimeNs run(const std::atomic<bool>& interrupted);
   nlohmann::ordered_json finish_alone(FlightOutcome& outcome, double wall_s) const;
   nlohmann::ordered_json finish_members(FlightOutcome& outcome, double wall_s) const;
@@ -67,6 +69,7 @@ class MissionFlight {
   FlightRequest request_;
   std::vector<Mission> members_;
   LoadedPolicies loaded_;
+  std::unique_ptr<host::HostedPolicy> later_;  // of policy.later, until it takes over
   std::optional<core::MissionKey> key_;  // of a team
   std::atomic<bool> in_the_air_ = false;
   std::unique_ptr<Running> running_;  // kept after the flight: see hangs()

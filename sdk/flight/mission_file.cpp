@@ -20,7 +20,7 @@ namespace pt = boost::property_tree;
 using core::InputError;
 using core::OptionTable;
 
-constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto",
+constexpr const char *kParameters = "policy.parameters", *kAuto = "policy.auto", *kLater = "policy.later",
                      *kSelection = "policy.selection";
 constexpr const char *kSurveySection = "survey", *kRegionSection = "region";
 constexpr const char* kEarlierMapKeys[] = {"start", "start_digest", "required", "search_time"};
@@ -29,6 +29,7 @@ constexpr const char *kPolicyVersion = "policy.version", *kKarstVersion = "karst
 struct AutoKeys {
   AutoOptions options;
   FixedChoice fixed;
+  LaterPolicy later;
 };
 
 /// With `auto_keys` the keys of policy.auto are there, too: for help, since no flight records them.
@@ -91,6 +92,7 @@ void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr)
     p.add("memory_limit_mib", m.policy_memory_limit_mib, 256, 1 << 20,
           "address space of a policy in a process of its own, in MiB");
     if (!auto_keys) return;
+    p.section("later", auto_keys->later);
     p.section("auto", auto_keys->options);
     p.section("auto.cave", auto_keys->fixed);
   });
@@ -135,6 +137,39 @@ pt::ptree take(pt::ptree& tree, const std::string& key) {
   return taken;
 }
 
+OptionTable table_of(LaterPolicy& later) {
+  OptionTable table;
+  describe(table, later);
+  table.add("selection", later.selection, {}, "");
+  return table;
+}
+
+pt::ptree recorded(const LaterPolicy& later) {
+  LaterPolicy copy = later;
+  pt::ptree tree = table_of(copy).resolved();
+  if (later.selection.empty()) tree.erase("selection");
+  if (!later.parameters.empty()) tree.put_child("parameters", later.parameters);
+  return tree;
+}
+
+/// The policy that takes over, as policy.later gives it; nothing if it is not given.
+std::optional<LaterPolicy> later_policy(pt::ptree tree, const std::string& file) {
+  if (tree.empty() && tree.data().empty()) return std::nullopt;
+  LaterPolicy later;
+  later.parameters = take(tree, "parameters");
+  pt::ptree nested;
+  nested.put_child(kLater, tree);
+  OptionTable table;
+  table.under(kLater, [&later](OptionTable& t) {
+    describe(t, later);
+    t.add("selection", later.selection, {}, "");
+  });
+  table.read(file, nested);
+  if (later.policy.empty()) throw InputError(file, kLater, "lacks the name of the policy");
+  if (!(later.after_s > 0)) throw InputError(file, kLater, "lacks its time: after \"60 s\"");
+  return later;
+}
+
 std::pair<std::string, std::string> split_setting(const std::string& setting) {
   const auto equals = setting.find('=');
   if (equals == std::string::npos || equals == 0)
@@ -177,6 +212,12 @@ void leave_out_others(const Mission& m, const OptionTable& table, pt::ptree& tre
 
 }  // namespace
 
+void describe(OptionTable& t, LaterPolicy& later) {
+  t.add("after", later.after_s, "s", 0, 1e6,
+        "from the first decision at this time on, by the vehicle's clock, another policy decides");
+  t.add("name", later.policy, {}, "that policy; a block parameters { } beside it holds its parameters");
+}
+
 std::string named_vehicle(const std::string& file, const MissionOverrides& overrides) {
   return vehicle_of(file.empty() ? pt::ptree() : core::read_including_info(file), settings_of(overrides));
 }
@@ -194,6 +235,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   m.auto_policy = take(tree, kAuto);
   if (!m.auto_policy.data().empty())
     throw InputError(m.file, kAuto, "expected a block { ... }, got \"" + m.auto_policy.data() + "\"");
+  pt::ptree later = take(tree, kLater);
   m.policy_selection = take(tree, kSelection).data();
   for (const char* fact : {kPolicyVersion, kKarstVersion}) take(tree, fact);
 
@@ -234,7 +276,7 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   }
   for (const auto& [key, value] : settings)
     if (!put_below(kParameters, key, value, m.policy_parameters) &&
-        !put_below(kAuto, key, as_given(key, value), m.auto_policy))
+        !put_below(kAuto, key, as_given(key, value), m.auto_policy) && !put_below(kLater, key, value, later))
       table.set("--set", key, value);
   if (!overrides.start.empty()) m.start = overrides.start;
   const auto other_policy = [&](const std::string& name, const pt::ptree& parameters) {
@@ -248,7 +290,11 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
     other_policy(preset.policy, preset.parameters);
     m.policy_selection.clear();
   }
-  if (m.policy != recorded_policy) m.policy_selection.clear();
+  if (m.policy != recorded_policy) {
+    m.policy_selection.clear();
+    later = {};
+  }
+  m.later = later_policy(later, m.file);
   m.resolved = table.resolved();
   if (m.core.team.robots == 1)
     for (const char* section : kTeamSections) m.resolved.erase(section);
@@ -291,6 +337,7 @@ pt::ptree recorded_mission(const Mission& m, const pt::ptree& policy_parameters,
   if (!policy_parameters.empty()) tree.put_child(kParameters, policy_parameters);
   tree.put(kPolicyVersion, policy_version);
   if (!m.policy_selection.empty()) tree.put(kSelection, m.policy_selection);
+  if (m.later) tree.put_child(kLater, recorded(*m.later));
   tree.put(kKarstVersion, KARST_VERSION);
   return tree;
 }

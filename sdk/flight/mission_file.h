@@ -7,11 +7,14 @@
 #pragma once
 #include <array>
 #include <boost/property_tree/ptree.hpp>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core_stack/common/enum_names.h"
+#include "core_stack/mapping/occupancy/voxel_map.h"
 #include "core_stack/mapping/region/region_keys.h"
 #include "core_stack/mission/options/mission_options.h"
 #include "core_stack/vehicle/mesh_keys.h"
@@ -53,6 +56,23 @@ struct RecordKeys {
   bool scans = false;
 };
 
+/// Another policy from a time of the flight on, by the vehicle's clock: policy.later.
+struct LaterPolicy {
+  double after_s = 0;
+  std::string policy;
+  boost::property_tree::ptree parameters;
+  std::string selection;  // why, if it was selected; "" if it was named
+};
+
+void describe(core::OptionTable& table, LaterPolicy& later);
+
+/// Decides at a stated time, from the map, which policy is to take over; nothing: the first goes on. The
+/// second value says why in either case.
+struct PolicyReview {
+  double after_s = 0;
+  std::function<std::pair<std::optional<LaterPolicy>, std::string>(const core::VoxelMap&)> choose;
+};
+
 struct Mission {
   std::string file;  // as named, for messages
   std::string cave, start, vehicle = "simulator", policy = "nearest_frontier";
@@ -72,6 +92,8 @@ struct Mission {
   boost::property_tree::ptree policy_parameters;
   boost::property_tree::ptree auto_policy;  // policy.auto, as given (auto_policy.h)
   std::string policy_selection;             // why this policy, if it was selected; "" if it was named
+  std::optional<LaterPolicy> later;
+  std::optional<PolicyReview> review;       // of `auto`, instead of `later`
   boost::property_tree::ptree resolved;     // every setting but the policy's parameters
 };
 

@@ -190,12 +190,15 @@ void add_expected(const Experience& e, const CaveFacts& cave, const TimeBudget& 
 selection::Selected selected_for(const std::optional<Experience>& e, const Mission& m,
                                  const LookOptions& options, const selection::CaveFigures& figures,
                                  const std::string& mesh_hash) {
-  selection::SelectOptions select = options.select;
-  select.conditions = flight::conditions_of(m);
   selection::Selected none;
   none.refused = true;
   none.reason = "no experience is installed, and --results gives none";
   if (!e) return none;
+  selection::SelectOptions select = options.select;
+  select.conditions = flight::conditions_of(m);
+  // What a flight of another length does is forecast below.
+  if (!selection::why_other_conditions(*e, select.conditions).empty())
+    select.conditions.endurance_s = selection::kUnknown;
   try {
     return selection::select(*e, figures, select, m.cave, mesh_hash);
   } catch (const InputError& error) {

@@ -22,6 +22,7 @@ using core::InputError;
 
 constexpr int kResamples = 1000;
 constexpr double kMaxEnduranceRatio = 3;  // farther from all endurances flown nothing is named
+constexpr double kMaxRatioThere = 2;      // the same of flights in this very cave
 constexpr int kTellingFigures = 6;  // least number of known figures to identify a cave by equal figures
 
 /// Whether enough figures are known of both, and all of them agree to six digits, as files hold them.
@@ -35,18 +36,29 @@ bool same_figures(const CaveFigures& a, const CaveFigures& b) {
   return known >= kTellingFigures;
 }
 
-/// The sites of this very cave under the conditions asked for, if two contestants or more flew there: several
-/// if it was flown from several starts.
+/// The sites of this very cave under the conditions asked for, of the nearest endurance, if two contestants or
+/// more flew there: several if it was flown from several starts.
 std::vector<std::size_t> this_very_cave(const Experience& e, const Values& v, const CaveFigures& cave,
                                         const AskedConditions& asked, const std::string& mesh_hash) {
   std::vector<std::size_t> same;
+  double nearest = std::numeric_limits<double>::infinity();  // by endurance
   for (std::size_t s = 0; s < v.sites; ++s) {
     const KnownCave& there = e.caves[e.sites[s].cave];
     if (!same_figures(cave, there.figures) && (mesh_hash.empty() || mesh_hash != there.hash)) continue;
-    if (!meets(e.conditions[e.sites[s].condition], asked)) continue;
+    const Condition& condition = e.conditions[e.sites[s].condition];
+    AskedConditions but_time = asked;
+    but_time.endurance_s = kUnknown;
+    if (!meets(condition, but_time)) continue;
     int flew = 0;
     for (std::size_t k = 0; k < v.contestants; ++k) flew += !std::isnan(v.at(k, s));
-    if (flew >= 2) same.push_back(s);
+    if (flew < 2) continue;
+    const double off = std::isnan(asked.endurance_s)
+                           ? 0
+                           : std::abs(std::log(condition.endurance_s / asked.endurance_s));
+    if (off > std::log(kMaxRatioThere) || off > nearest + 1e-9) continue;
+    if (off < nearest - 1e-9) same.clear();
+    nearest = off;
+    same.push_back(s);
   }
   return same;
 }

@@ -50,8 +50,8 @@ struct Selected {
 };
 
 /// `mesh_hash`: that of campaign::mesh_hash(), "" if unknown. If two contestants have flown in this cave (the
-/// same mesh, or the same figures to the sixth digit) under the conditions asked for, their results there
-/// decide. Values and intervals stay within what the metric can be in this cave, as in expected_figures().
+/// same mesh, or the same figures to the sixth digit) with the vehicle and team asked for, and an endurance of
+/// half to twice that, their results there decide. Values and intervals stay within what the metric can be in this cave, as in expected_figures().
 /// Throws InputError if the experience has no value of the metric, or if the description, which comes from
 /// `source`, has no figure.
 Selected select(const Experience& experience, const CaveFigures& cave, const SelectOptions& options,

@@ -294,7 +294,7 @@ TEST(Select, ACaveThatWasFlownDecidesUnderTheSameConditionsOnly) {
     return select(e, e.caves[2].figures, {.conditions = conditions}, "cave", "abc");
   };
   EXPECT_TRUE(asked({.vehicle = "camera_uav", .endurance_s = 310}).flown);
-  EXPECT_FALSE(asked({.vehicle = "camera_uav", .endurance_s = 400}).flown);
+  EXPECT_FALSE(asked({.vehicle = "camera_uav", .endurance_s = 700}).flown);
   EXPECT_EQ(name_of_first(e, asked({.vehicle = "camera_uav", .endurance_s = 310})), "level");
 }
 
