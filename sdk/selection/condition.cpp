@@ -14,7 +14,7 @@ namespace karst::selection {
 namespace {
 
 constexpr std::size_t kSettingsNamed = 4;
-constexpr double kSameEndurance = 0.1;  // relative
+constexpr double kSameEndurance = 0.25;  // relative
 
 // Settings that make the kind of a condition, as key or as beginning of keys.
 constexpr std::array kOwnKeys{"vehicle",

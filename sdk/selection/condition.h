@@ -42,7 +42,7 @@ struct AskedConditions {
 };
 AskedConditions asked(const Condition& condition);
 
-/// Whether the condition is what is asked for: endurance within 10 %, all else equal or not given.
+/// Whether the condition is what is asked for: endurance within 25 %, all else equal or not given.
 bool meets(const Condition& condition, const AskedConditions& asked);
 
 /// "camera_uav, 480 s, a team of 3".

@@ -166,7 +166,7 @@ def write_campaign(args, name, vehicle, battery, caves, seeds):
         f"name {name}", "profile campaign", f'flight_time "{battery}"', 'trial_timeout "1 h"',
         f"seeds {seeds}", "metric coverage_auc",
         "settings {", f'  simulator {{ vehicle {vehicle}  battery_minutes "{battery}"  '
-        f'objects {{ count {OBJECTS} }} }}', "}",
+        f'rgb {{ fitted true }}  objects {{ count {OBJECTS} }} }}', "}",
         *contestants(args), *(f"cave {{ file caves/{row['cave']}.info }}" for row in rows), ""])
     file = args.folder / f"{name}.info"
     file.write_text(text)
