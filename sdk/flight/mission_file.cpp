@@ -157,14 +157,8 @@ std::optional<LaterPolicy> later_policy(pt::ptree tree, const std::string& file)
   if (tree.empty() && tree.data().empty()) return std::nullopt;
   LaterPolicy later;
   later.parameters = take(tree, "parameters");
-  pt::ptree nested;
-  nested.put_child(kLater, tree);
-  OptionTable table;
-  table.under(kLater, [&later](OptionTable& t) {
-    describe(t, later);
-    t.add("selection", later.selection, {}, "");
-  });
-  table.read(file, nested);
+  OptionTable table = table_of(later);
+  for (const auto& [key, child] : tree) table.set(file + ": " + kLater, key, child.data());
   if (later.policy.empty()) throw InputError(file, kLater, "lacks the name of the policy");
   if (!(later.after_s > 0)) throw InputError(file, kLater, "lacks its time: after \"60 s\"");
   return later;
