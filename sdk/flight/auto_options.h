@@ -22,9 +22,10 @@ inline void describe(core::OptionTable& t, AutoOptions& o) {
   t.add("survey_start", o.survey_start, {}, "\"x y z\" in the survey, of a mesh");
   t.add("results", o.results, {}, "store of a campaign, or an experience; empty: what is installed");
   t.add("metric", o.select.metric, {}, "the goal, as karst select --for has it, or the figure to do best in");
-  t.add("reconsider", o.reconsider_s, "s", 0, 1e6,
-        "once, at the first decision at this time of the vehicle's clock, the policy is selected again by what "
-        "the map shows then; 0: never");
+  t.add(
+      "reconsider", o.reconsider_s, "s", 0, 1e6,
+      "once, at the first decision at this time of the vehicle's clock, the policy is selected again by what "
+      "the map shows then; 0: never");
   t.add("otherwise", o.otherwise, {}, "the policy if nothing similar was flown; empty: no flight");
 }
 

@@ -129,8 +129,8 @@ selection::CaveFigures with_part(selection::CaveFigures known, const core::Voxel
 PolicyReview review_of(const Mission& m, const AutoOptions& o, const selection::Experience& e,
                        const selection::CaveFigures& known) {
   return {o.reconsider_s,
-          [=, file = m.file, given = m.policy_parameters](const core::VoxelMap& map)
-              -> std::pair<std::optional<LaterPolicy>, std::string> {
+          [=, file = m.file, given = m.policy_parameters](
+              const core::VoxelMap& map) -> std::pair<std::optional<LaterPolicy>, std::string> {
             try {
               const selection::Selected s = selection::select(e, with_part(known, map), o.select, file);
               if (s.refused) return {std::nullopt, s.reason};

@@ -60,11 +60,12 @@ void refuse_second_policy(const Mission& mission, const FlightRequest& request) 
   const char* key = mission.later ? "policy.later" : "policy.auto.reconsider";
   if (is_team(mission)) throw core::InputError(mission.file, key, "is for a single vehicle, not for a team");
   if (request.record_requests)
-    throw core::InputError("karst fly", "--record-requests", "records one policy: leave it or " + std::string(key) + " out");
+    throw core::InputError("karst fly", "--record-requests",
+                           "records one policy: leave it or " + std::string(key) + " out");
   if (mission.review && request.clock == core::Clock::real_time)
-    throw core::InputError("karst fly", "--real-time",
-                           "describing the map takes a second in which no decision is made: leave " +
-                               std::string(key) + " out");
+    throw core::InputError(
+        "karst fly", "--real-time",
+        "describing the map takes a second in which no decision is made: leave " + std::string(key) + " out");
 }
 
 /// The mission with another policy.
@@ -126,8 +127,8 @@ MissionFlight::MissionFlight(const Mission& mission, const FlightRequest& reques
   refuse_second_policy(mission_, request_);
   loaded_ = load_policies(members_, request_);
   if (mission_.later)
-    later_ = host::load_policy(
-        policy_choice(with_policy(mission_, *mission_.later), request_, loaded_.isolation));
+    later_ =
+        host::load_policy(policy_choice(with_policy(mission_, *mission_.later), request_, loaded_.isolation));
   if (is_team(mission_)) key_ = radio_key(mission_);
 }
 

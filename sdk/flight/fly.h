@@ -70,7 +70,7 @@ class MissionFlight {
   std::vector<Mission> members_;
   LoadedPolicies loaded_;
   std::unique_ptr<host::HostedPolicy> later_;  // of policy.later, until it takes over
-  std::optional<core::MissionKey> key_;  // of a team
+  std::optional<core::MissionKey> key_;        // of a team
   std::atomic<bool> in_the_air_ = false;
   std::unique_ptr<Running> running_;  // kept after the flight: see hangs()
 };

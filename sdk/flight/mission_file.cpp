@@ -156,7 +156,8 @@ pt::ptree recorded(const LaterPolicy& later) {
 std::optional<LaterPolicy> later_policy(pt::ptree tree, const std::string& file) {
   if (tree.empty() && tree.data().empty()) return std::nullopt;
   LaterPolicy later;
-  later.parameters = take(tree, "parameters");
+  later.parameters = tree.get_child("parameters", {});
+  tree.erase("parameters");
   OptionTable table = table_of(later);
   for (const auto& [key, child] : tree) table.set(file + ": " + kLater, key, child.data());
   if (later.policy.empty()) throw InputError(file, kLater, "lacks the name of the policy");

@@ -93,8 +93,8 @@ struct Mission {
   boost::property_tree::ptree auto_policy;  // policy.auto, as given (auto_policy.h)
   std::string policy_selection;             // why this policy, if it was selected; "" if it was named
   std::optional<LaterPolicy> later;
-  std::optional<PolicyReview> review;       // of `auto`, instead of `later`
-  boost::property_tree::ptree resolved;     // every setting but the policy's parameters
+  std::optional<PolicyReview> review;    // of `auto`, instead of `later`
+  boost::property_tree::ptree resolved;  // every setting but the policy's parameters
 };
 
 /// The seed of the policy's own random stream: the mission's, or a different one for another `policy.stream`,

@@ -1,5 +1,5 @@
-// Two policies, one after the other: at a stated time of the flight another one may take over, once. Which one
-// is known before the flight (`policy.later`), or decided then, by what the cave turned out to be
+// Two policies, one after the other: at a stated time of the flight another one may take over, once. Which
+// one is known before the flight (`policy.later`), or decided then, by what the cave turned out to be
 // (`policy.auto.reconsider`, auto_policy.h).
 #pragma once
 #include <functional>
@@ -20,8 +20,8 @@ struct Successor {
 
 class SuccessivePolicies final : public core::PolicyPort {
  public:
-  /// `review` is called in the first decision at `after` or later, by the vehicle's clock, and never again; it
-  /// must not throw. `first` must outlive this.
+  /// `review` is called in the first decision at `after` or later, by the vehicle's clock, and never again;
+  /// it must not throw. `first` must outlive this.
   using Review = std::function<Successor(const core::DecisionRequest&)>;
   SuccessivePolicies(core::PolicyPort& first, core::TimeNs after, Review review)
       : first_(first), after_(after), review_(std::move(review)) {}

@@ -14,13 +14,13 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 
 /// The conditions under which flights of an experience were flown.
 struct Condition {
-  std::string name = {};         // of this condition in its experience
-  double horizon_s = 0;          // the longest possible exploration: the limit of restricted times
-  double endurance_s = 0;        // the longest flight of one vehicle: its battery, or its time
-  std::int64_t robots = 1;       // in a team; 1: a vehicle alone
+  std::string name = {};                   // of this condition in its experience
+  double horizon_s = 0;                    // the longest possible exploration: the limit of restricted times
+  double endurance_s = 0;                  // the longest flight of one vehicle: its battery, or its time
+  std::int64_t robots = 1;                 // in a team; 1: a vehicle alone
   std::string vehicle = {}, sensors = {};  // such as lidar_uav with os0_32; "": not known
   std::string profile = {};                // of the campaign
-  Settings mission = {};         // campaign::CampaignResults::shared
+  Settings mission = {};                   // campaign::CampaignResults::shared
 };
 
 /// Fills in endurance, team, vehicle and sensors from horizon and settings, and then the name.

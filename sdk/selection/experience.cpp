@@ -74,9 +74,9 @@ std::vector<Site> all_sites(const Experience& e) {
 
 const std::vector<std::string>& learned_metrics() {
   static const std::vector<std::string> metrics{
-      "coverage_auc",  "coverage",       "restricted_t50_s", "restricted_t90_s",   "completed",
-      "contacts",      "explored_volume_m3", "exploring_speed_mps", "path_length_m", "energy_wh",
-      "depth_m",       "surface_imaged", "surface_seen",     "objects_found",      "objects_reported",
+      "coverage_auc",    "coverage",           "restricted_t50_s",    "restricted_t90_s", "completed",
+      "contacts",        "explored_volume_m3", "exploring_speed_mps", "path_length_m",    "energy_wh",
+      "depth_m",         "surface_imaged",     "surface_seen",        "objects_found",    "objects_reported",
       "volume_per_wh_m3"};
   return metrics;
 }
@@ -109,7 +109,8 @@ Experience learn(const campaign::CampaignResults& results, const std::string& so
   Experience e;
   e.caves = std::move(caves);
   e.contestants = std::move(contestants);
-  e.conditions.push_back({.horizon_s = results.horizon_s, .profile = results.profile, .mission = results.shared});
+  e.conditions.push_back(
+      {.horizon_s = results.horizon_s, .profile = results.profile, .mission = results.shared});
   complete(e.conditions.front(), results.flight_time, source);
   lay_out(e, all_sites(e));
   for (std::size_t m = 0; m < e.metrics.size(); ++m) {
@@ -155,8 +156,8 @@ Experience merged(const Experience& a, const Experience& b, const std::string& s
       e.conditions.back().name = condition.name + "_" + std::to_string(n);
   }
   for (const KnownCave& cave : b.caves) {
-    const auto same = std::find_if(e.caves.begin(), e.caves.end(),
-                                   [&](const KnownCave& c) { return c.name == cave.name; });
+    const auto same =
+        std::find_if(e.caves.begin(), e.caves.end(), [&](const KnownCave& c) { return c.name == cave.name; });
     cave_of.push_back(static_cast<std::size_t>(same - e.caves.begin()));
     if (same == e.caves.end())
       e.caves.push_back(cave);

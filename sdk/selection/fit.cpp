@@ -71,8 +71,7 @@ class LeftOutCaves {
         if (known_[s * v_.contestants + k] == 0) continue;
         // What cannot be predicted is taken for as good as the others.
         const bool predicted = flown[k] > 0 && flown[k] >= kMinFlownFraction * all;
-        const double off =
-            advantage_[s * v_.contestants + k] - (predicted ? advantages[k] / flown[k] : 1.0);
+        const double off = advantage_[s * v_.contestants + k] - (predicted ? advantages[k] / flown[k] : 1.0);
         sum[here.cave] += off * off;
         n[here.cave] += 1;
       }

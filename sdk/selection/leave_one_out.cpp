@@ -19,7 +19,9 @@ constexpr double kLevel = 0.95;
 constexpr int kDraws = 2000;
 constexpr double kMinShareOfCells = 0.5;  // in which a contestant must have flown to be the best on average
 
-bool flew(const Experience& e, std::size_t k, std::size_t s, std::size_t m) { return e.at(k, s, m).flights > 0; }
+bool flew(const Experience& e, std::size_t k, std::size_t s, std::size_t m) {
+  return e.at(k, s, m).flights > 0;
+}
 
 /// How near a value comes to the best one: 1 if it is as good, 0 if it is nothing beside it.
 double score(double value, double best, double sign) {

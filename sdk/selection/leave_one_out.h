@@ -30,8 +30,8 @@ inline constexpr std::size_t kRules = 6;
 
 /// What one rule chose for a site and a goal.
 struct Chosen {
-  std::size_t contestant = 0;  // not of chance
-  double value = kUnknown;     // in that cave
+  std::size_t contestant = 0;             // not of chance
+  double value = kUnknown;                // in that cave
   double best = 0, within = 0, lost = 0;  // is the best; within 5 % of it; the share of the best that is lost
 };
 
@@ -54,9 +54,9 @@ struct RuleValue {
 };
 
 struct LeaveOneOut {
-  std::vector<std::string> metrics;  // the goals
-  std::vector<LeftOut> choices;      // at sites where at least two contestants flew
-  std::size_t caves = 0, refused = 0;  // refused choices
+  std::vector<std::string> metrics;             // the goals
+  std::vector<LeftOut> choices;                 // at sites where at least two contestants flew
+  std::size_t caves = 0, refused = 0;           // refused choices
   std::array<RuleValue, kRules> all, answered;  // answered: without those refused
   const RuleValue& of(Rule rule) const { return all[static_cast<std::size_t>(rule)]; }
   const RuleValue& answered_of(Rule rule) const { return answered[static_cast<std::size_t>(rule)]; }

@@ -90,12 +90,12 @@ std::vector<double> condition_weights(const std::vector<Condition>& conditions, 
                                       const Kernel& kernel) {
   std::vector<double> weight;
   for (const Condition& c : conditions)
-    weight.push_back((differ(c.vehicle, a.vehicle)   ? kernel.other_vehicle
-                      : differ(c.sensors, a.sensors) ? kernel.other_sensors
-                                                     : 1.0) *
-                     likeness(c.endurance_s, a.endurance_s, kernel.endurance_spread) *
-                     likeness(static_cast<double>(c.robots), static_cast<double>(a.robots),
-                              kernel.team_spread));
+    weight.push_back(
+        (differ(c.vehicle, a.vehicle)   ? kernel.other_vehicle
+         : differ(c.sensors, a.sensors) ? kernel.other_sensors
+                                        : 1.0) *
+        likeness(c.endurance_s, a.endurance_s, kernel.endurance_spread) *
+        likeness(static_cast<double>(c.robots), static_cast<double>(a.robots), kernel.team_spread));
   return weight;
 }
 
@@ -158,8 +158,7 @@ std::vector<double> left_out_residuals(const Experience& e, const Values& v, con
   for (std::size_t s = 0; s < v.sites; ++s) {
     if (std::isnan(level[s])) continue;
     const KnownCave& left_out = e.caves[e.sites[s].cave];
-    SiteWeights w =
-        site_weights(e, left_out.figures, asked(e.conditions[e.sites[s].condition]), kernel);
+    SiteWeights w = site_weights(e, left_out.figures, asked(e.conditions[e.sites[s].condition]), kernel);
     for (std::size_t o = 0; o < v.sites; ++o)
       if (same_rock(e.caves[e.sites[o].cave], left_out)) w.advantage[o] = w.level[o] = 0;
     for (std::size_t k = 0; k < v.contestants; ++k)

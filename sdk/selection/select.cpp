@@ -23,7 +23,7 @@ using core::InputError;
 constexpr int kResamples = 1000;
 constexpr double kMaxEnduranceRatio = 3;  // farther from all endurances flown nothing is named
 constexpr double kMaxRatioThere = 2;      // the same of flights in this very cave
-constexpr int kTellingFigures = 6;  // least number of known figures to identify a cave by equal figures
+constexpr int kTellingFigures = 6;        // least number of known figures to identify a cave by equal figures
 
 /// Whether enough figures are known of both, and all of them agree to six digits, as files hold them.
 bool same_figures(const CaveFigures& a, const CaveFigures& b) {
@@ -36,8 +36,8 @@ bool same_figures(const CaveFigures& a, const CaveFigures& b) {
   return known >= kTellingFigures;
 }
 
-/// The sites of this very cave under the conditions asked for, of the nearest endurance, if two contestants or
-/// more flew there: several if it was flown from several starts.
+/// The sites of this very cave under the conditions asked for, of the nearest endurance, if two contestants
+/// or more flew there: several if it was flown from several starts.
 std::vector<std::size_t> this_very_cave(const Experience& e, const Values& v, const CaveFigures& cave,
                                         const AskedConditions& asked, const std::string& mesh_hash) {
   std::vector<std::size_t> same;
@@ -52,9 +52,8 @@ std::vector<std::size_t> this_very_cave(const Experience& e, const Values& v, co
     int flew = 0;
     for (std::size_t k = 0; k < v.contestants; ++k) flew += !std::isnan(v.at(k, s));
     if (flew < 2) continue;
-    const double off = std::isnan(asked.endurance_s)
-                           ? 0
-                           : std::abs(std::log(condition.endurance_s / asked.endurance_s));
+    const double off =
+        std::isnan(asked.endurance_s) ? 0 : std::abs(std::log(condition.endurance_s / asked.endurance_s));
     if (off > std::log(kMaxRatioThere) || off > nearest + 1e-9) continue;
     if (off < nearest - 1e-9) same.clear();
     nearest = off;
@@ -214,9 +213,8 @@ std::vector<NearCave> near_caves(const Experience& e, const std::vector<double>&
   for (std::size_t c = 0; c < e.caves.size(); ++c)
     if (const Distance d = distance_between(cave, e.caves[c].figures, scales); known[c] && d.shared > 0)
       near.push_back({c, d, of_cave[c] / all});
-  std::stable_sort(near.begin(), near.end(), [](const NearCave& a, const NearCave& b) {
-    return a.distance.value < b.distance.value;
-  });
+  std::stable_sort(near.begin(), near.end(),
+                   [](const NearCave& a, const NearCave& b) { return a.distance.value < b.distance.value; });
   return near;
 }
 
@@ -275,8 +273,7 @@ Selected select(const Experience& e, const CaveFigures& cave, const SelectOption
   if (to_json(cave) == "{}") throw InputError(source, "", "nothing is known of the cave");
   const Values values = values_of(e, metric);
   const std::vector<double> level = levels(values), scales = robust_scales(e.caves);
-  const std::vector<std::size_t> same =
-      this_very_cave(e, values, cave, options.conditions, mesh_hash);
+  const std::vector<std::size_t> same = this_very_cave(e, values, cave, options.conditions, mesh_hash);
   Selected s;
   s.evidence = evidence_of(e, metric, options.conditions);
   if (same.empty() && s.evidence.caves < kFewestCaves)

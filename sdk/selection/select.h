@@ -1,5 +1,5 @@
-// Selects a policy for a cave and a mission from the results of policies in similar caves. The method and its measured
-// benefit: docs/select.md.
+// Selects a policy for a cave and a mission from the results of policies in similar caves. The method and its
+// measured benefit: docs/select.md.
 #pragma once
 #include <string>
 #include <vector>
@@ -32,7 +32,7 @@ struct Expected {
 
 /// How many flights the answer rests on.
 struct Evidence {
-  std::size_t flights = 0, caves = 0;                      // of the metric, in all
+  std::size_t flights = 0, caves = 0;                    // of the metric, in all
   std::size_t flights_as_asked = 0, caves_as_asked = 0;  // under the conditions asked for
 };
 
@@ -50,10 +50,10 @@ struct Selected {
 };
 
 /// `mesh_hash`: that of campaign::mesh_hash(), "" if unknown. If two contestants have flown in this cave (the
-/// same mesh, or the same figures to the sixth digit) with the vehicle and team asked for, and an endurance of
-/// half to twice that, their results there decide. Values and intervals stay within what the metric can be in this cave, as in expected_figures().
-/// Throws InputError if the experience has no value of the metric, or if the description, which comes from
-/// `source`, has no figure.
+/// same mesh, or the same figures to the sixth digit) with the vehicle and team asked for, and an endurance
+/// of half to twice that, their results there decide. Values and intervals stay within what the metric can be
+/// in this cave, as in expected_figures(). Throws InputError if the experience has no value of the metric, or
+/// if the description, which comes from `source`, has no figure.
 Selected select(const Experience& experience, const CaveFigures& cave, const SelectOptions& options,
                 const std::string& source, const std::string& mesh_hash = "");
 
@@ -62,7 +62,8 @@ std::size_t metric_of(const Experience& experience, const std::string& metric, c
 Fit fit(const Experience& experience, std::size_t metric);
 
 /// Best first by these weights; contestants that cannot be predicted are left out.
-std::vector<Expected> ranking_by(const Experience& experience, std::size_t metric, const SiteWeights& weights);
+std::vector<Expected> ranking_by(const Experience& experience, std::size_t metric,
+                                 const SiteWeights& weights);
 
 /// Why conditions like these were never flown; "" if they were.
 std::string why_other_conditions(const Experience& experience, const AskedConditions& asked);

@@ -68,7 +68,8 @@ std::string runner_up_in_words(const Experience& e, const Selected& s, const std
 
 std::string evidence_in_words(const Experience& e, const Selected& s, const SelectOptions& options) {
   const Evidence& v = s.evidence;
-  std::string out = "It rests on " + core::counted(v.flights, "flight") + " in " + core::counted(v.caves, "cave");
+  std::string out =
+      "It rests on " + core::counted(v.flights, "flight") + " in " + core::counted(v.caves, "cave");
   if (e.conditions.size() > 1) {
     out += " under " + std::to_string(e.conditions.size()) + " conditions";
     if (!s.flown) {

@@ -276,7 +276,9 @@ void print_parts(const Experience& e, const selection::LeaveOneOut& l) {
     std::copy_if(l.choices.begin(), l.choices.end(), std::back_inserter(some), counts);
     if (some.empty()) return;
     const auto value = value_of(e, some);
-    const auto lost = [&](selection::Rule r) { return percent(value[static_cast<std::size_t>(r)].lost.mean); };
+    const auto lost = [&](selection::Rule r) {
+      return percent(value[static_cast<std::size_t>(r)].lost.mean);
+    };
     print_out("  %-28s %9s %12s %9s %9s\n", name.c_str(), lost(selection::Rule::selected).c_str(),
               lost(selection::Rule::conditions).c_str(), lost(selection::Rule::overall).c_str(),
               lost(selection::Rule::chance).c_str());
@@ -319,8 +321,9 @@ void leave_one_out(const SelectArguments& args) {
       "Within 5 %: what it found is at least as good as the best there but for 5 % of that. Lost: the share "
       "of the best that was lost. Drawn at random: the mean over all that flew there.");
   if (l.caves < kManyCaves)
-    print_out("%zu caves are few: by chance alone a share of 50 %% is off by up to %.0f points, 95 times in 100.\n",
-              l.caves, 100 * 1.96 * 0.5 / std::sqrt(static_cast<double>(l.caves)));
+    print_out(
+        "%zu caves are few: by chance alone a share of 50 %% is off by up to %.0f points, 95 times in 100.\n",
+        l.caves, 100 * 1.96 * 0.5 / std::sqrt(static_cast<double>(l.caves)));
 }
 
 void learn(const SelectArguments& args) {
@@ -329,17 +332,19 @@ void learn(const SelectArguments& args) {
     throw InputError("--out", args.out, "expected a name that ends in .info");
   const Experience e = selection::load_experience(args.learn, tell);
   evaluation::write_whole_file(args.out, selection::to_info(e));
-  print_out("%s: %zu contestants in %zu caves, %s\n", args.out.c_str(), e.contestants.size(),
-            e.caves.size(), core::counted(e.conditions.size(), "condition").c_str());
+  print_out("%s: %zu contestants in %zu caves, %s\n", args.out.c_str(), e.contestants.size(), e.caves.size(),
+            core::counted(e.conditions.size(), "condition").c_str());
 }
 
 /// Goal and conditions as asked. Throws InputError.
 void complete(SelectArguments& args) {
   if (!args.cave.empty() && args.goals.size() > 1)
     throw InputError("karst select", "--for", "a policy is selected for one goal");
-  if (!args.goals.empty()) args.options.metric = selection::metric_for(args.goals.front(), "karst select --for");
+  if (!args.goals.empty())
+    args.options.metric = selection::metric_for(args.goals.front(), "karst select --for");
   selection::AskedConditions& asked = args.options.conditions;
-  if (args.cave.empty() && (!asked.vehicle.empty() || !asked.sensors.empty() || asked.robots > 0 || !args.battery.empty()))
+  if (args.cave.empty() &&
+      (!asked.vehicle.empty() || !asked.sensors.empty() || asked.robots > 0 || !args.battery.empty()))
     throw InputError("karst select", "--vehicle, --sensors, --battery, --team", "go with --cave");
   if (args.battery.empty()) return;
   core::OptionTable table;
@@ -388,8 +393,9 @@ void add_select_command(CLI::App& app) {
     names += (names.empty() ? "" : ", ") + std::string(g.name) + " (" + std::string(g.meaning) + ")";
   select
       ->add_option("--for,--metric", args->goals,
-                   "the goal: " + names + "; or the figure to do best in; default coverage_auc; several with "
-                   "--leave-one-out, default: all that were flown")
+                   "the goal: " + names +
+                       "; or the figure to do best in; default coverage_auc; several with "
+                       "--leave-one-out, default: all that were flown")
       ->type_name("GOAL")
       ->check(not_empty());
   select->add_option("--vehicle", args->options.conditions.vehicle, "such as camera_uav")->check(not_empty());

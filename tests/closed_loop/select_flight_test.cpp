@@ -20,18 +20,19 @@ void write(const fs::path& file, const std::string& text) { std::ofstream(file) 
 
 /// Four caves that differ in their slope; unknown_ratio is the better one in steep ones, nearest_frontier in
 /// level ones.
-std::string experience() {
+std::string experience(const std::string& endurance) {
   std::string text =
-      "schema karst.experience/3\nflown { profile campaign }\ncondition { name q horizon \"10 s\" endurance \"10 s\" }\ncontestant { name near policy "
-      "nearest_frontier }\n"
+      std::string("schema karst.experience/3\nflown { profile campaign }\ncondition { name q horizon \"") +
+      endurance + "\" endurance \"" + endurance +
+      "\" }\ncontestant { name near policy nearest_frontier }\n"
       "contestant { name ratio policy unknown_ratio parameters { goals 4 } }\n";
   for (int c = 0; c < 6; ++c) {
     const std::string name = "c" + std::to_string(c), steep = std::to_string(0.1 + 0.12 * c);
     text += "cave { name " + name + " figures { width \"3 m\" verticality " + steep + " } }\n";
-    text += "result { contestant near cave " + name + " condition q coverage_auc \"" + std::to_string(0.6 - 0.05 * c) +
-            " 5 0.01\" }\n";
-    text += "result { contestant ratio cave " + name + " condition q coverage_auc \"" + std::to_string(0.4 + 0.05 * c) +
-            " 5 0.01\" }\n";
+    text += "result { contestant near cave " + name + " condition q coverage_auc \"" +
+            std::to_string(0.6 - 0.05 * c) + " 5 0.01\" }\n";
+    text += "result { contestant ratio cave " + name + " condition q coverage_auc \"" +
+            std::to_string(0.4 + 0.05 * c) + " 5 0.01\" }\n";
   }
   return text;
 }
@@ -39,7 +40,7 @@ std::string experience() {
 TEST(PolicyAuto, IsSettledBeforeTakeOffRecordedAndReplayedWithoutIt) {
   const fs::path dir = fresh_folder("policy_auto");
   small_cave(dir, 3);
-  write(dir / "experience.info", experience());
+  write(dir / "experience.info", experience("10 s"));
   write(dir / "known.info", "verticality 0.65\nwidth \"3.1 m\"\n");
   write(dir / "mission.info",
         "cave { file cave3.info }\npolicy {\n name auto\n auto {\n description known.info\n results "
@@ -80,11 +81,41 @@ TEST(PolicyAuto, TheMissionsTableWinsAndNothingElseIsAsked) {
   EXPECT_NE(mission.find("the mission's table says so"), std::string::npos);
 }
 
+// A flight that changed its policy was not to be repeated: the block that it wrote was not read.
+TEST(PolicyAuto, ChangesItsMindOnceByTheMapAndIsRepeatedWithoutTheExperience) {
+  const fs::path dir = fresh_folder("policy_auto_reconsidered");
+  small_cave(dir, 3);
+  write(dir / "experience.info", experience("60 s"));
+  write(dir / "mission.info",
+        "cave { file cave3.info }\npolicy {\n name auto\n auto {\n reconsider \"8 s\"  otherwise "
+        "lateral_frontier\n results experience.info\n } }\nmission { max_flight_time \"60 s\" }\n");
+  const std::string first = (dir / "first").string(), second = (dir / "second").string();
+  const Output flown =
+      run_karst("fly " + (dir / "mission.info").string() + " --threads 1 --no-report --quiet --out " + first);
+  ASSERT_NE(flown.code, 1) << flown.text;
+  const std::string mission = bytes_of(dir / "first" / "mission.info"),
+                    events = bytes_of(dir / "first" / "events.jsonl");
+  EXPECT_NE(events.find("from here on, after lateral_frontier: "), std::string::npos) << events;
+  EXPECT_NE(mission.find("after \"8 s\""), std::string::npos) << mission;
+  fs::remove(dir / "experience.info");
+  const Output again =
+      run_karst("fly " + first + "/mission.info --threads 1 --no-report --quiet --out " + second);
+  ASSERT_NE(again.code, 1) << again.text;
+  EXPECT_EQ(bytes_of(dir / "second" / "mission.info"), mission);
+  EXPECT_EQ(bytes_of(dir / "second" / "events.jsonl"), events);
+  const std::string fly = "fly " + (dir / "first/mission.info").string();
+  EXPECT_TRUE(run_karst(fly + " --set policy.later.after=soon").says("policy.later: after: expected"));
+  EXPECT_TRUE(run_karst(fly + " --set policy.later.name=no_such").says("no_such"));
+  EXPECT_TRUE(run_karst(fly + " --record-requests").says("--record-requests"));
+  EXPECT_TRUE(run_karst("fly " + (dir / "mission.info").string() + " --set policy.auto.otherwise=")
+                  .says("names the policy until policy.auto.reconsider"));
+}
+
 // It said nothing: one had to open mission.info.
 TEST(PolicyAuto, SaysOnTheTerminalWhatItChoseAndWhy) {
   const fs::path dir = fresh_folder("policy_auto_said");
   const std::string cave = small_cave(dir, 3);
-  write(dir / "experience.info", experience());
+  write(dir / "experience.info", experience("600 s"));
   write(dir / "known.info", "verticality 0.65\nwidth \"3.1 m\"\n");
   const std::string fly = "fly --cave " + cave +
                           " --policy auto --set policy.auto.results=" + (dir / "experience.info").string() +
@@ -110,7 +141,7 @@ TEST(PolicyAuto, SaysOnTheTerminalWhatItChoseAndWhy) {
 TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   const fs::path dir = fresh_folder("policy_auto_refused");
   const std::string cave = small_cave(dir, 3), out = " --out " + (dir / "run").string();
-  write(dir / "experience.info", experience());
+  write(dir / "experience.info", experience("600 s"));
   write(dir / "wide.info", "width \"80 m\"\n");
   const std::string fly =
       "fly --cave " + cave + " --policy auto --set policy.auto.results=" + (dir / "experience.info").string();

@@ -243,9 +243,10 @@ TEST(Select, NamesThePolicyForTheVehicleThatIsAskedFor) {
   EXPECT_LT(camera.fit.kernel.other_vehicle, 0.2);
   EXPECT_EQ(camera.evidence.flights, 8u * 2 * 3 * 4);
   EXPECT_EQ(camera.evidence.flights_as_asked, 8u * 3 * 4);
-  EXPECT_NE(camera.reason.find("It rests on 192 flights in 8 caves under 2 conditions, 96 of them in 8 caves as "
-                               "asked (camera_uav); flights of other vehicles count "),
-            std::string::npos)
+  EXPECT_NE(
+      camera.reason.find("It rests on 192 flights in 8 caves under 2 conditions, 96 of them in 8 caves as "
+                         "asked (camera_uav); flights of other vehicles count "),
+      std::string::npos)
       << camera.reason;
   EXPECT_EQ(any.evidence.flights_as_asked, any.evidence.flights);
 }
@@ -261,7 +262,8 @@ TEST(Select, TheEnduranceDecidesWhereItMatters) {
       e.at(k, s, 0) = {4, 0.5 + ((k == 0) != is_long ? 0.1 : 0.0) + 0.01 * random.normal(), 0.01};
   }
   const auto first = [&](double endurance_s) {
-    return name_of_first(e, select(e, cave_figures(0, 0.4), {.conditions = {.endurance_s = endurance_s}}, "c"));
+    return name_of_first(e,
+                         select(e, cave_figures(0, 0.4), {.conditions = {.endurance_s = endurance_s}}, "c"));
   };
   EXPECT_EQ(first(240), "steep");
   EXPECT_EQ(first(200), "steep");
@@ -323,7 +325,8 @@ TEST(Fit, FindsTheFigureThatTells) {
 
 TEST(Fit, WhereNothingTellsMostlyAllCavesCountAlike) {
   int alike = 0;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) alike += std::isinf(fit(experience(20, 0, 0.1, seed), 0).kernel.bandwidth);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    alike += std::isinf(fit(experience(20, 0, 0.1, seed), 0).kernel.bandwidth);
   EXPECT_GE(alike, 10);
 }
 
@@ -552,7 +555,8 @@ TEST(Goals, StandForFigures) {
   EXPECT_EQ(metric_for("restricted_t90_s", "test"), "restricted_t90_s");
   EXPECT_EQ(goal_of("surface_imaged"), "walls");
   for (const Goal& g : goals())
-    EXPECT_NE(std::find(learned_metrics().begin(), learned_metrics().end(), g.metric), learned_metrics().end())
+    EXPECT_NE(std::find(learned_metrics().begin(), learned_metrics().end(), g.metric),
+              learned_metrics().end())
         << g.name;
   try {
     metric_for("deepst", "test");
@@ -741,8 +745,9 @@ TEST(Experience, SurvivesItsFile) {
 }
 
 TEST(Experience, BadFilesAreErrors) {
-  const std::string flown = "schema karst.experience/3\nflown { profile campaign }\n"
-      "condition { name q horizon \"300 s\" endurance \"300 s\" }\n",
+  const std::string flown =
+                        "schema karst.experience/3\nflown { profile campaign }\n"
+                        "condition { name q horizon \"300 s\" endurance \"300 s\" }\n",
                     head = flown + "cave { name a }\ncontestant { name k policy p }\n";
   const auto message = [&](const std::string& text) -> std::string {
     try {
@@ -760,11 +765,12 @@ TEST(Experience, BadFilesAreErrors) {
   EXPECT_NE(message(head + "cave { name b figures { widht 4 } }\n").find("did you mean width?"),
             std::string::npos);
   EXPECT_NE(message(head + "contestant { name l }\n").find("lacks its policy"), std::string::npos);
-  EXPECT_NE(message(head + "result { contestant k cave z condition q coverage \"1 1\" }\n").find("no such cave: z"),
-            std::string::npos);
   EXPECT_NE(
-      message(head + "result { contestant k cave a condition q cover \"1 1\" }\n").find("result.cover: no such figure"),
+      message(head + "result { contestant k cave z condition q coverage \"1 1\" }\n").find("no such cave: z"),
       std::string::npos);
+  EXPECT_NE(message(head + "result { contestant k cave a condition q cover \"1 1\" }\n")
+                .find("result.cover: no such figure"),
+            std::string::npos);
   for (const char* bad : {"many", "0.5", "0.5 0", "0.5 -2", "nan 3", "0.5 3 -1", "0.5 3 0.1 7", "0.5 3 x"})
     EXPECT_NE(message(head + "result { contestant k cave a condition q coverage \"" + bad + "\" }\n")
                   .find("expected \"mean flights"),
@@ -800,11 +806,16 @@ TEST(Experience, FileThatDoesNotTellHowItWasFlownSaysHowToMakeANewOne) {
   EXPECT_NE(message_of(head + "flown { }\n").find("flown: lacks its profile"), std::string::npos);
   EXPECT_NE(message_of(head + "flown { horizon \"5 min\" }\n").find("flown.horizon: no such key"),
             std::string::npos);
-  const auto condition = [&](const std::string& keys) { return message_of(flown + "condition { " + keys + " }\n"); };
-  EXPECT_EQ(condition("name q horizon \"5 min\" endurance \"5 min\" robots 3 vehicle v sensors s"), "accepted");
+  const auto condition = [&](const std::string& keys) {
+    return message_of(flown + "condition { " + keys + " }\n");
+  };
+  EXPECT_EQ(condition("name q horizon \"5 min\" endurance \"5 min\" robots 3 vehicle v sensors s"),
+            "accepted");
   EXPECT_NE(condition("horizon \"5 min\"").find("condition: lacks its name"), std::string::npos);
-  EXPECT_NE(condition("name q endurance \"5 min\"").find("condition q: lacks its horizon"), std::string::npos);
-  EXPECT_NE(condition("name q horizon \"5 min\"").find("condition q: lacks its endurance"), std::string::npos);
+  EXPECT_NE(condition("name q endurance \"5 min\"").find("condition q: lacks its horizon"),
+            std::string::npos);
+  EXPECT_NE(condition("name q horizon \"5 min\"").find("condition q: lacks its endurance"),
+            std::string::npos);
   EXPECT_NE(condition("name q horizn 300").find("did you mean horizon?"), std::string::npos);
   for (const char* bad : {"robots 0", "robots -2", "robots many", "robots 1.5"})
     EXPECT_NE(condition(std::string("name q horizon \"5 min\" endurance \"5 min\" ") + bad)
@@ -895,11 +906,14 @@ TEST(Experience, FlownOtherwiseIsNotMixed) {
     return "accepted";
   };
   EXPECT_EQ(message([](Experience&) {}), "accepted");
-  EXPECT_NE(message([](Experience& e) { e.conditions[0].horizon_s = 60; }).find("horizon 60.0 s here, 300.0 s there"),
+  EXPECT_NE(message([](Experience& e) {
+              e.conditions[0].horizon_s = 60;
+            }).find("horizon 60.0 s here, 300.0 s there"),
             std::string::npos);
-  EXPECT_NE(
-      message([](Experience& e) { e.conditions[0].profile = "full"; }).find("profile full here, campaign there"),
-      std::string::npos);
+  EXPECT_NE(message([](Experience& e) {
+              e.conditions[0].profile = "full";
+            }).find("profile full here, campaign there"),
+            std::string::npos);
   EXPECT_NE(message([](Experience& e) {
               e.conditions[0].mission[1].second = "1 m/s";
             }).find("motion.max_speed 1 m/s here, 1.5 m/s there"),
@@ -925,7 +939,8 @@ TEST(Experience, FlownOtherwiseIsNotMixed) {
   camera.conditions[0].mission[1].second = "1 m/s";
   EXPECT_THROW(merged(a, camera, "other"), InputError);
   // A setting that one of them does not have yet.
-  EXPECT_EQ(message([](Experience& e) { e.conditions[0].mission.emplace_back("simulator.haze", "0"); }), "accepted");
+  EXPECT_EQ(message([](Experience& e) { e.conditions[0].mission.emplace_back("simulator.haze", "0"); }),
+            "accepted");
 }
 
 TEST(Preset, SurvivesItsFileAndRefusesAnythingElse) {
