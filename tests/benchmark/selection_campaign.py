@@ -9,7 +9,7 @@
 
 The flights go in rounds. A round takes one cave of each kind through all conditions (vehicle and battery), by all
 contestants, with one seed. Whenever it is stopped, all kinds and conditions have been flown equally often, but for the
-round under way; `learn` takes whole rounds only. Goals cost no flights: they are figures of the same flights.
+round under way. Goals cost no flights: they are figures of the same flights.
 
 Tuned parameters: put what `karst tune` wrote as preset.info into FOLDER/tuned as NAME.info. They are appended as
 contestants, to rounds that were flown before as well.
