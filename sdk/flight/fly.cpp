@@ -57,6 +57,9 @@ void refuse_for_team(const FlightRequest& request) {
 
 void refuse_second_policy(const Mission& mission, const FlightRequest& request) {
   if (!mission.later && !mission.review) return;
+  if (mission.later && mission.review)
+    throw core::InputError(mission.file, "policy.later",
+                           "a flight changes its policy once: leave this or policy.auto.reconsider out");
   const char* key = mission.later ? "policy.later" : "policy.auto.reconsider";
   if (is_team(mission)) throw core::InputError(mission.file, key, "is for a single vehicle, not for a team");
   if (request.record_requests)
@@ -260,7 +263,7 @@ Successor MissionFlight::successor(const core::DecisionRequest& request) {
     chosen->parameters = next->parameters();
     mission_.later = std::move(chosen);
     return {std::move(next), reason};
-  } catch (const core::InputError& e) {
+  } catch (const std::exception& e) {  // the first policy goes on
     return {nullptr, e.what()};
   }
 }

@@ -287,7 +287,8 @@ Mission read_mission(const std::string& file, const MissionOverrides& overrides)
   }
   if (m.policy != recorded_policy) {
     m.policy_selection.clear();
-    later = {};
+    const auto names_later = [](const std::string& setting) { return setting.starts_with("policy.later."); };
+    if (std::none_of(overrides.settings.begin(), overrides.settings.end(), names_later)) later = {};
   }
   m.later = later_policy(later, m.file);
   m.resolved = table.resolved();

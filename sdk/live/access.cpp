@@ -84,7 +84,9 @@ bool same_token(std::string_view given, std::string_view expected) {
 
 bool is_from_here(std::string_view host, std::string_view origin) {
   const auto names_here = [](std::string_view authority) {
-    const std::string_view name = authority.substr(0, authority.rfind(':'));
+    const std::string_view name = authority.substr(
+        0, authority.starts_with('[') ? std::min(authority.find(']'), authority.size() - 1) + 1
+                                      : authority.rfind(':'));
     return name == "localhost" || name == "[::1]" ||
            (name.starts_with("127.") && name.find_first_not_of("0123456789.") == std::string_view::npos);
   };

@@ -222,12 +222,13 @@ class LeftOutCave {
   std::map<std::string, std::vector<std::size_t>> by_vehicle_;
 };
 
-/// In how many caves at least two contestants have the figure.
+/// In how many caves the figure is known; other starts in one mesh are the same cave.
 std::size_t caves_with(const Experience& e, std::size_t m) {
+  const std::vector<std::size_t> rock = rocks_of(e);
   std::vector<bool> known(e.caves.size(), false);
   for (std::size_t s = 0; s < e.sites.size(); ++s)
     for (std::size_t k = 0; k < e.contestants.size(); ++k)
-      if (flew(e, k, s, m)) known[e.sites[s].cave] = true;
+      if (flew(e, k, s, m)) known[rock[e.sites[s].cave]] = true;
   return static_cast<std::size_t>(std::count(known.begin(), known.end(), true));
 }
 

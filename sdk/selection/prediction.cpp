@@ -152,6 +152,13 @@ bool same_rock(const KnownCave& a, const KnownCave& b) {
   return a.name == b.name || (!a.hash.empty() && a.hash == b.hash);
 }
 
+std::vector<std::size_t> rocks_of(const Experience& e) {
+  std::vector<std::size_t> rock(e.caves.size());
+  for (std::size_t c = 0; c < rock.size(); ++c)
+    while (rock[c] < c && !same_rock(e.caves[rock[c]], e.caves[c])) ++rock[c];
+  return rock;
+}
+
 std::vector<double> left_out_residuals(const Experience& e, const Values& v, const std::vector<double>& level,
                                        const Kernel& kernel) {
   std::vector<double> residuals(v.mean.size(), kUnknown);

@@ -58,6 +58,8 @@ double predict(const Values& values, const std::vector<double>& level, const Sit
 
 /// Whether both are the same rock: the same cave, perhaps flown from two starts.
 bool same_rock(const KnownCave& a, const KnownCave& b);
+/// For each cave the first one of the same rock: what is counted as one cave.
+std::vector<std::size_t> rocks_of(const Experience& experience);
 
 /// Residuals of predicting each site from those of the other caves, by contestant and site; NaN if there is
 /// none.

@@ -114,19 +114,23 @@ void give_intervals(const Experience& e, const Values& v, const std::vector<doub
                     const Kernel& kernel, const SelectOptions& options, std::vector<Expected>& ranking) {
   const std::vector<double> residuals = left_out_residuals(e, v, level, kernel),
                             weights = level_weights(e.conditions, options.conditions);
+  const std::vector<std::size_t> rock = rocks_of(e);
   for (Expected& x : ranking) {
     double squares = 0, sum = 0;
-    std::vector<bool> of_cave(e.caves.size(), false);
+    std::vector<double> of_rock(e.caves.size(), 0.0);
     for (std::size_t s = 0; s < v.sites; ++s)
       if (const double r = residuals[x.contestant * v.sites + s]; !std::isnan(r)) {
         const double w = weights[e.sites[s].condition];
         squares += w * r * r;
         sum += w;
-        if (w > 0) of_cave[e.sites[s].cave] = true;
+        of_rock[rock[e.sites[s].cave]] += w;
       }
-    const auto n = std::count(of_cave.begin(), of_cave.end(), true);
-    if (n < static_cast<std::ptrdiff_t>(kFewestCaves)) continue;
-    const boost::math::students_t student(static_cast<double>(n - 1));
+    // How many caves of equal weight say as much (Kish's effective sample size).
+    double weight_squares = 0;
+    for (const double w : of_rock) weight_squares += w * w;
+    const double n = sum * sum / weight_squares;
+    if (!(n > static_cast<double>(kFewestCaves) - 0.5)) continue;
+    const boost::math::students_t student(n - 1);
     const double half = boost::math::quantile(student, 0.5 + options.level / 2) * std::sqrt(squares / sum);
     x.low = x.value - half;
     x.high = x.value + half;
@@ -139,7 +143,7 @@ void give_intervals_there(const Experience& e, std::size_t metric, const std::ve
   const auto sites = static_cast<double>(there.size());
   for (Expected& x : ranking) {
     double variance = 0;
-    int degrees = 0;
+    double degrees = 0;
     for (const std::size_t s : there) {
       const Fared& f = e.at(x.contestant, s, metric);
       variance += f.deviation * f.deviation / f.flights / (sites * sites);
@@ -158,15 +162,18 @@ void give_intervals_there(const Experience& e, std::size_t metric, const std::ve
 double confidence_of(const Experience& e, const Values& v, const SiteWeights& weights, double sign,
                      std::size_t first, bool other_caves) {
   core::Random random = core::Random::stream(1, "confidence");
+  const std::vector<std::size_t> rock = rocks_of(e);
+  const std::set<std::size_t> distinct(rock.begin(), rock.end());
+  const std::vector<std::size_t> rocks(distinct.begin(), distinct.end());
   int same = 0;
   for (int i = 0; i < kResamples; ++i) {
     std::vector<double> times(e.caves.size(), other_caves ? 0.0 : 1.0);
-    for (std::size_t c = 0; other_caves && c < e.caves.size(); ++c)
-      times[static_cast<std::size_t>(random.uniform() * static_cast<double>(e.caves.size()))] += 1;
+    for (std::size_t c = 0; other_caves && c < rocks.size(); ++c)
+      times[rocks[static_cast<std::size_t>(random.uniform() * static_cast<double>(rocks.size()))]] += 1;
     SiteWeights drawn = weights;
     for (std::size_t s = 0; s < v.sites; ++s) {
-      drawn.advantage[s] *= times[e.sites[s].cave];
-      drawn.level[s] *= times[e.sites[s].cave];
+      drawn.advantage[s] *= times[rock[e.sites[s].cave]];
+      drawn.level[s] *= times[rock[e.sites[s].cave]];
     }
     Values noisy = v;
     for (std::size_t j = 0; j < noisy.mean.size(); ++j) noisy.mean[j] += noisy.error[j] * random.normal();

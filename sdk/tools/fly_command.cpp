@@ -262,7 +262,8 @@ void check_live(const FlyArguments& args) {
   if (args.live.asked && args.mission_file.find(':') != std::string::npos && !fs::exists(args.mission_file))
     throw core::InputError("karst fly", "--live " + args.mission_file,
                            "an address stands after an equals sign: --live=" + args.mission_file);
-  if (!args.live.asked && !args.live.token.empty() && !std::getenv("KARST_LIVE_TOKEN"))
+  const char* of_environment = std::getenv("KARST_LIVE_TOKEN");
+  if (!args.live.asked && !args.live.token.empty() && (!of_environment || args.live.token != of_environment))
     throw core::InputError("karst fly", "--live-token", "the flight is not served: add --live");
 }
 

@@ -373,7 +373,8 @@ void add_select_command(CLI::App& app) {
       "select",
       "Name the policy for a cave, by how policies fared in caves like it\n\n"
       "  karst select --cave caves/new.info --results runs/campaign     a mesh or a cave's .info file\n"
-      "  karst select --for deepest --vehicle camera_uav --battery \"8 min\" --cave caves/new.info\n"
+      "  karst select --for deepest --vehicle camera_uav --battery \"8 min\" --cave new.info --results "
+      "mine.info\n"
       "  karst select --cave runs/monday/map.bt                         the map of an earlier flight\n"
       "  karst select --cave known.info                                 what a caver knows: width \"4 m\" "
       "...\n"

@@ -22,8 +22,8 @@ constexpr double kTurningFraction = 0.9;
 /// Trajectories stay below the tracker's limits. If they were sampled at the limits, the virtual vehicle
 /// could never catch up after a delay: it would fall ever further behind, and cut corners.
 MotionLimits with_room_to_catch_up(MotionLimits limits) {
-  limits.max_speed_mps *= 0.98;
-  limits.max_acceleration_mps2 *= 0.85;
+  limits.max_speed_mps *= 0.93;
+  limits.max_acceleration_mps2 *= 0.75;
   limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
   return limits;
 }
@@ -72,24 +72,10 @@ Command Flight::control(TimeNs now) {
     mass_.update(command_.thrust_n, state().position.z() > ground_m_ + kOffGround_m, kControlPeriod_s);
     controller_.set_mass_kg(mass_.mass_kg());
   }
-  wait_for_reference(now);
   const Trajectory& wanted = emergency_landing_.begun() ? emergency_landing_.trajectory(now) : trajectory_;
   command_ = controller_.update(state(), tracker_.step(wanted, now), kControlPeriod_s);
   command_.armed = true;
   return command(now);
-}
-
-/// A reference that is far behind would cut the bends of the trajectory, and near the limits it could never
-/// catch up. The trajectory waits for it.
-void Flight::wait_for_reference(TimeNs now) {
-  constexpr double kMayLag_m = 0.15, kStands_m = 0.3;
-  if (now <= trajectory_.start || at_rest(now)) return;
-  const Vec3 velocity = velocity_at(now);
-  if (velocity.norm() < 0.05) return;
-  // Along the path alone: a trajectory that waited for a reference which is ahead would wait for ever.
-  const double lag_m = (trajectory_.at(now).position - reference().position).dot(velocity.normalized());
-  const double part = std::clamp((lag_m - kMayLag_m) / (kStands_m - kMayLag_m), 0.0, 1.0);
-  trajectory_.start += static_cast<TimeNs>(part * static_cast<double>(from_seconds(kControlPeriod_s)));
 }
 
 /// With the IMU measurement expected if the vehicle follows its commands. What controllers of its own do,
@@ -281,13 +267,9 @@ Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) co
   return out;
 }
 
-/// The acceleration reaches that of braking with limited jerk: x = v T + a T^2 / 2 - j T^3 / 6 until then.
 Flight::CommittedSegment Flight::until_stop(TimeNs t) const {
-  const double v = velocity_at(t).norm(), braking = braking_mps2(), jerk = limits_.max_jerk_mps3;
-  if (v < 1e-3) return committed_segment(t, 0);
-  const double a = std::clamp(departure_at(t).acceleration_mps2.dot(velocity_at(t)) / v, -braking, braking);
-  const double T = (a + braking) / jerk, v_then = std::max(0.0, v + 0.5 * (a - braking) * T);
-  return committed_segment(t, v * T + a * T * T / 2 - jerk * T * T * T / 6 + v_then * v_then / (2 * braking));
+  const double v = velocity_at(t).norm();
+  return committed_segment(t, v * v / (2 * braking_mps2()));
 }
 
 Flight::CommittedSegment Flight::until_end(TimeNs t) const {

@@ -121,7 +121,6 @@ class Flight {
  private:
   CommittedSegment committed_segment(TimeNs t, double length_m) const;
   Vec3 velocity_at(TimeNs t) const;
-  void wait_for_reference(TimeNs now);
   void bridge(TimeNs until);
   Command command(TimeNs now) const;
   void arm(TimeNs now);

@@ -61,14 +61,10 @@ struct HeadingPlan {
   std::optional<double> goal_heading_rad;  // reached over the last stretch and at the goal
 };
 
-/// The greatest speed at the beginning of a path from which the vehicle can slow down for each bend and for
-/// the end, m/s. If it begins faster, its reference leaves the path.
-double greatest_start_speed_mps(const std::vector<Vec3>& points, const MotionLimits& limits);
-
-/// Samples `points` from `start_speed_mps` along the path to rest at its end. The accelerations along
-/// and across the path together stay within the limit (up to sampling). The vehicle turns on the spot first
-/// where it must face the direction of flight and the path turns faster than the heading rate allows. A path
-/// that takes longer than two hours is cut: the trajectory then ends at rest on the path before that.
+/// Samples `points` from `start_speed_mps` along the path to rest at its end. Accelerations along and across
+/// the path stay within the limits (up to sampling). The vehicle turns on the spot first where it must face
+/// the direction of flight and the path turns faster than the heading rate allows. A path that takes longer
+/// than two hours is cut: the trajectory then ends at rest on the path before that.
 Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
                              const MotionLimits& limits, const HeadingPlan& heading,
                              const SlowPlaces& slow = {});

@@ -45,8 +45,11 @@ Plan plan_for(const std::optional<Campaign>& campaign, const RunOptions& options
       return make_plan(*campaign, options.karst, cave_cache_of(options));
     } catch (...) {
       std::error_code ignored;
-      if (!was_there)
-        fs::remove_all(options.folder, ignored);  // it holds what was found out about caves only
+      if (!was_there) {  // it holds what was found out about caves only, unless another campaign has begun
+                         // there
+        fs::remove_all(cave_cache_of(options), ignored);
+        fs::remove(options.folder, ignored);
+      }
       throw;
     }
   }

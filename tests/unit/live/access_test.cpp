@@ -63,6 +63,8 @@ TEST(LiveAccess, PagesOfOtherSitesAreNotFromHere) {
   EXPECT_TRUE(is_from_here("127.0.0.1:8765", ""));
   EXPECT_TRUE(is_from_here("localhost:8765", "http://localhost:8765"));
   EXPECT_TRUE(is_from_here("[::1]:8765", "http://[::1]:8765"));
+  EXPECT_TRUE(is_from_here("[::1]", "http://[::1]"));
+  EXPECT_FALSE(is_from_here("[::1", ""));
   EXPECT_TRUE(is_from_here("127.0.0.1:8765", "https://app.foxglove.dev"));
   EXPECT_TRUE(is_from_here("127.0.0.1:8765", "app://desktop"));
   EXPECT_FALSE(is_from_here("127.0.0.1:8765", "https://evil.example"));

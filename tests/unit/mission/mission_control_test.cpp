@@ -345,7 +345,7 @@ TEST_F(MissionControlTest, SlowedSinceTakeOffItExploresSlowlyUntilTheCauseIsGone
   });
   const double slow_mps = options.safety.slow_fraction * options.motion.max_speed_mps;
   EXPECT_EQ(safety(), (Texts{kDegraded, "none: "}));
-  EXPECT_LT(slowly_mps, 1.15 * slow_mps);
+  EXPECT_LT(slowly_mps, 1.1 * slow_mps);
   EXPECT_GT(slowly_mps, 0.7 * slow_mps);
   EXPECT_GT(then_mps, 1.5 * slow_mps);
 }

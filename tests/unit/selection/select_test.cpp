@@ -475,6 +475,14 @@ TEST(LeaveOneOut, SelectingIsWorthItWhereCavesTell) {
   EXPECT_NEAR(l.of(Rule::chance).best.mean, 1.0 / 3, 1e-9);
 }
 
+TEST(LeaveOneOut, StartsInOneMeshAreOneCaveOfWhichNothingIsLeftOut) {
+  Experience e = experience(8, 0.3, 0.03, 11);
+  for (KnownCave& cave : e.caves) cave.hash = "one mesh";
+  EXPECT_THROW(leave_one_out(e, {"coverage_auc"}, "test"), InputError);
+  const Selected s = select(e, cave_figures(0, 0.4), {}, "new.info");
+  EXPECT_TRUE(std::isnan(s.ranking.front().low)) << "one cave tells no interval";
+}
+
 TEST(LeaveOneOut, WhereCavesTellNothingItIsNearlyAsGoodAsTheOverallBest) {
   // One is better everywhere by 10 %, and noise is as large: selecting must not lose much by hunting it.
   double selected = 0, overall = 0;
