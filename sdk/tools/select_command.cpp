@@ -397,7 +397,7 @@ void add_select_command(CLI::App& app) {
                    "the goal: " + names +
                        "; or the figure to do best in; default coverage_auc; several with "
                        "--leave-one-out, default: all that were flown")
-      ->type_name("GOAL")
+      ->type_name(kMetric)
       ->check(not_empty());
   select->add_option("--vehicle", args->options.conditions.vehicle, "such as camera_uav")->check(not_empty());
   select->add_option("--sensors", args->options.conditions.sensors, "of the vehicle, such as os0_32")

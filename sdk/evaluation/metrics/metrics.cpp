@@ -218,8 +218,6 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
        {"data_at_base_share", "robots_landed", "robots_connected", "exploration_time_1_s",
         "exploration_time_2_s", "exploration_time_3_s", "exploration_time_4_s", "exploration_time_5_s"})
     m[key] = nullptr;  // of a team: sdk/flight/team_metrics.h
-  if (volume.explored_m3 && f.energy_wh && *f.energy_wh > 0)
-    m["volume_per_wh_m3"] = value(*volume.explored_m3 / *f.energy_wh);
   if (const auto beyond = unsurveyed_figures(run)) {
     m["unsurveyed_volume_m3"] = value(beyond->volume_m3);
     m["time_to_unsurveyed_50_s"] = value(beyond->time_to_50_s);
@@ -229,6 +227,9 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
     m["earlier_volume_m3"] = value(earlier->earlier_m3);
     m["added_volume_m3"] = value(added_m3(volume.explored_m3, earlier->earlier_m3));
   }
+  m["volume_per_wh_m3"] = value(volume.explored_m3 && f.energy_wh && *f.energy_wh > 0
+                                    ? std::optional(*volume.explored_m3 / *f.energy_wh)
+                                    : std::nullopt);
   return m;
 }
 
