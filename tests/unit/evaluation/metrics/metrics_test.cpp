@@ -95,7 +95,8 @@ TEST(Metrics, HaveEveryNameInOrderAndNullWhereNothingIsKnown) {
                                        "exploration_time_2_s",
                                        "exploration_time_3_s",
                                        "exploration_time_4_s",
-                                       "exploration_time_5_s"};
+                                       "exploration_time_5_s",
+                                       "volume_per_wh_m3"};
   std::vector<std::string> found;
   for (const auto& [key, value] : m.items()) {
     found.push_back(key);
