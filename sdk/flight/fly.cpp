@@ -75,6 +75,7 @@ void refuse_second_policy(const Mission& mission, const FlightRequest& request) 
 Mission with_policy(Mission mission, const LaterPolicy& later) {
   mission.policy = later.policy;
   mission.policy_parameters = later.parameters;
+  mission.file += ": policy.later";  // where the parameters are read, for messages
   return mission;
 }
 

@@ -50,6 +50,14 @@ double seconds_of(const std::string& key, const std::string& text, const std::st
   return s;
 }
 
+std::int64_t count_of(const std::string& key, const std::string& text, const std::string& source) {
+  std::int64_t n = 1;
+  core::OptionTable table;
+  table.add(key, n, 1, 1000, "");
+  table.set(source, key, text);
+  return n;
+}
+
 std::string words(const std::string& vehicle, const std::string& sensors, double endurance_s,
                   std::int64_t robots) {
   std::string out = vehicle.empty() ? "any vehicle" : vehicle;
@@ -68,7 +76,7 @@ void complete(Condition& c, const std::string& flight_time, const std::string& s
     return found == settings.end() ? std::string() : found->second;
   };
   if (const std::string robots = setting("team.robots"); !robots.empty())
-    c.robots = std::max<std::int64_t>(1, std::atoi(robots.c_str()));
+    c.robots = count_of("team.robots", robots, source);
   if (c.vehicle.empty()) c.vehicle = setting("simulator.vehicle");
   if (c.sensors.empty())
     c.sensors = setting(c.vehicle.find("lidar") != std::string::npos ? "simulator.lidar.unit"

@@ -71,7 +71,7 @@ inline constexpr double kAsGood = 0.05;
 LeaveOneOut leave_one_out(const Experience& experience, const std::vector<std::string>& metrics,
                           const std::string& source);
 
-/// The metrics of the goals (goal.h) that enough caves have, and that differ between contestants.
+/// The metrics of the goals (goal.h) that enough caves have, and that are not 0 in all of them.
 std::vector<std::string> goals_flown(const Experience& experience);
 
 /// The value over some choices only, such as those of one goal.

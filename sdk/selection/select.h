@@ -68,9 +68,9 @@ std::vector<Expected> ranking_by(const Experience& experience, std::size_t metri
 /// Why conditions like these were never flown; "" if they were.
 std::string why_other_conditions(const Experience& experience, const AskedConditions& asked);
 
-/// The predicted figures of one contestant with the same bandwidth, by metric of the experience. None is
-/// outside of what its metric can be in this cave: an explored volume is at most the coverage times the
-/// volume of the cave, and a depth at most the length of its passages.
+/// The predicted figures of one contestant with the weights of the selection, by metric of the experience.
+/// None is outside of what its metric can be in this cave: an explored volume is at most the coverage times
+/// the volume of the cave, and a depth at most the length of its passages.
 std::vector<double> expected_figures(const Experience& experience, const CaveFigures& cave,
                                      const Selected& selected, std::size_t contestant);
 

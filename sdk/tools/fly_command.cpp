@@ -315,6 +315,59 @@ int fly(const FlyArguments& args, const PolicyChooser& choose_policy, const Live
   return code;
 }
 
+/// What is flown: the mission, or what stands for one.
+void add_mission_options(CLI::App& fly_app, FlyArguments& args) {
+  fly_app.add_option("mission", args.mission_file, "mission file (.info)")
+      ->type_name(kFile)
+      ->check(not_empty());
+  fly_app.add_option("--cave", args.overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
+      ->type_name(kFile)
+      ->check(not_empty());
+  fly_app
+      .add_option("--start", args.overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
+      ->check(not_empty());
+  add_mesh_options(fly_app, args.mesh);
+  fly_app
+      .add_option(
+          "--policy", args.overrides.policy,
+          "exploration policy, or a file with one (my_policy.py); see karst policy list; auto: selected "
+          "for the cave")
+      ->type_name(kPolicy)
+      ->check(not_empty());
+  fly_app
+      .add_option("--preset", args.overrides.preset,
+                  "file with a policy and its parameters (" + core::doc_path("docs/tune.md") + ")")
+      ->type_name(kFile)
+      ->check(not_empty());
+  fly_app.add_option("--plugin", args.plugins, "file with policies (.so or .py) to look in first")
+      ->type_name(kFile)
+      ->allow_extra_args(false)
+      ->check(not_empty());
+  fly_app.add_option("--set", args.overrides.settings, "key=value; see --keys")
+      ->type_name(kSetting)
+      ->allow_extra_args(false);
+  fly_app.add_option("--seed", args.seed, "seed of every random stream")->check(not_empty());
+  fly_app
+      .add_option("--time", args.flight_time,
+                  "flight time, such as \"300 s\" or 5min: short for --set mission.max_flight_time")
+      ->check(not_empty());
+}
+
+/// Returns --live.
+const CLI::Option* add_live_options(CLI::App& fly_app, LiveArguments& args) {
+  const CLI::Option* live = fly_app.add_flag(
+      "--live{127.0.0.1:8765}", args.address,
+      "=ADDRESS:PORT: serve the flight as it goes, for Foxglove and for a page at this address; "
+      "127.0.0.1:8765 if no address is given: " +
+          core::doc_path("docs/live.md"));
+  fly_app
+      .add_option("--live-token", args.token,
+                  "what clients of --live must give; needed beyond this machine's own address")
+      ->envname("KARST_LIVE_TOKEN")
+      ->check(not_empty());
+  return live;
+}
+
 }  // namespace
 
 void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter start_live) {
@@ -332,40 +385,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter sta
           "battery, and landed at the start or as a relay (of a team: all did). 2 it did not: sent home or "
           "down early, landed elsewhere, or the record is incomplete. 1 not flown, or nothing could be "
           "printed.");
-  fly_app->add_option("mission", args->mission_file, "mission file (.info)")
-      ->type_name(kFile)
-      ->check(not_empty());
-  fly_app->add_option("--cave", args->overrides.cave, "cave .info file or mesh (STL, PLY, OBJ, DAE)")
-      ->type_name(kFile)
-      ->check(not_empty());
-  fly_app
-      ->add_option("--start", args->overrides.start, "\"x y z [heading_deg]\" above the floor to start from")
-      ->check(not_empty());
-  add_mesh_options(*fly_app, args->mesh);
-  fly_app
-      ->add_option(
-          "--policy", args->overrides.policy,
-          "exploration policy, or a file with one (my_policy.py); see karst policy list; auto: selected "
-          "for the cave")
-      ->type_name(kPolicy)
-      ->check(not_empty());
-  fly_app
-      ->add_option("--preset", args->overrides.preset,
-                   "file with a policy and its parameters (" + core::doc_path("docs/tune.md") + ")")
-      ->type_name(kFile)
-      ->check(not_empty());
-  fly_app->add_option("--plugin", args->plugins, "file with policies (.so or .py) to look in first")
-      ->type_name(kFile)
-      ->allow_extra_args(false)
-      ->check(not_empty());
-  fly_app->add_option("--set", args->overrides.settings, "key=value; see --keys")
-      ->type_name(kSetting)
-      ->allow_extra_args(false);
-  fly_app->add_option("--seed", args->seed, "seed of every random stream")->check(not_empty());
-  fly_app
-      ->add_option("--time", args->flight_time,
-                   "flight time, such as \"300 s\" or 5min: short for --set mission.max_flight_time")
-      ->check(not_empty());
+  add_mission_options(*fly_app, *args);
   fly_app->add_option("--out", args->out, "run directory; default runs/POLICY-CAVE-SEED")
       ->type_name(kFolder)
       ->check(not_empty());
@@ -380,16 +400,7 @@ void add_fly_command(CLI::App& app, PolicyChooser choose_policy, LiveStarter sta
       "a second of flight takes a second, as on a vehicle, with real-time priorities and locked memory where "
       "they are allowed; no two flights are the same: " +
           core::doc_path("docs/real_time.md"));
-  const CLI::Option* live_flag = fly_app->add_flag(
-      "--live{127.0.0.1:8765}", args->live.address,
-      "=ADDRESS:PORT: serve the flight as it goes, for Foxglove and for a page at this address; "
-      "127.0.0.1:8765 if no address is given: " +
-          core::doc_path("docs/live.md"));
-  fly_app
-      ->add_option("--live-token", args->live.token,
-                   "what clients of --live must give; needed beyond this machine's own address")
-      ->envname("KARST_LIVE_TOKEN")
-      ->check(not_empty());
+  const CLI::Option* live_flag = add_live_options(*fly_app, args->live);
   fly_app->add_flag("--json", args->json, "print metrics.json instead of a summary; no status line");
   fly_app->add_flag("--quiet", args->quiet, "no status line, no notes, nothing on what policy auto chose");
   fly_app->add_flag("--no-report", args->no_report, "metrics only, no report.html");

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
@@ -251,6 +252,7 @@ void print_caves(const Experience& e, const selection::LeaveOneOut& l) {
     int n = 0;
     bool refused = false;
     std::string best;
+    std::set<std::string> named;
     for (const selection::LeftOut& x : l.choices) {
       if (e.sites[x.site].cave != c) continue;
       const auto lost = [&](selection::Rule r) { return 100 * x.by[static_cast<std::size_t>(r)].lost; };
@@ -261,7 +263,7 @@ void print_caves(const Experience& e, const selection::LeaveOneOut& l) {
       refused |= x.refused;
       ++n;
       const std::string& name = e.contestants[x.best].name;
-      if (best.find(name) == std::string::npos) best += (best.empty() ? "" : ", ") + name;
+      if (named.insert(name).second) best += (best.empty() ? "" : ", ") + name;
     }
     if (n == 0) continue;
     print_out("  %-24s %8.2f %8.1f %8.1f %8.1f   %s%s\n", e.caves[c].name.c_str(), nearest, selected / n,

@@ -37,6 +37,25 @@ std::string experience(const std::string& endurance) {
   return text;
 }
 
+/// The mission.info and events.jsonl of a flight of `dir`/mission.info, which is flown again from its run
+/// directory, without the experience: the run stands by itself.
+struct FlownTwice {
+  explicit FlownTwice(const fs::path& dir) {
+    fly(dir / "mission.info", dir / "first");
+    mission = bytes_of(dir / "first" / "mission.info"), events = bytes_of(dir / "first" / "events.jsonl");
+    fs::remove(dir / "experience.info");
+    fly(dir / "first" / "mission.info", dir / "second");
+    EXPECT_EQ(bytes_of(dir / "second" / "mission.info"), mission);
+    EXPECT_EQ(bytes_of(dir / "second" / "events.jsonl"), events);
+  }
+  static void fly(const fs::path& mission_file, const fs::path& run) {
+    const Output flown =
+        run_karst("fly " + mission_file.string() + " --threads 1 --no-report --quiet --out " + run.string());
+    EXPECT_NE(flown.code, 1) << flown.text;
+  }
+  std::string mission, events;
+};
+
 TEST(PolicyAuto, IsSettledBeforeTakeOffRecordedAndReplayedWithoutIt) {
   const fs::path dir = fresh_folder("policy_auto");
   small_cave(dir, 3);
@@ -45,24 +64,13 @@ TEST(PolicyAuto, IsSettledBeforeTakeOffRecordedAndReplayedWithoutIt) {
   write(dir / "mission.info",
         "cave { file cave3.info }\npolicy {\n name auto\n auto {\n description known.info\n results "
         "experience.info\n } }\nmission { max_flight_time \"10 s\" }\n");
-  const std::string first = (dir / "first").string(), second = (dir / "second").string();
-  const Output flown =
-      run_karst("fly " + (dir / "mission.info").string() + " --threads 1 --no-report --quiet --out " + first);
-  ASSERT_NE(flown.code, 1) << flown.text;
-  const std::string mission = bytes_of(dir / "first" / "mission.info"),
-                    events = bytes_of(dir / "first" / "events.jsonl");
-  EXPECT_NE(mission.find("name unknown_ratio"), std::string::npos);
-  EXPECT_NE(mission.find("goals 4"), std::string::npos);
-  EXPECT_EQ(mission.find("name auto"), std::string::npos);
-  EXPECT_NE(events.find("\"kind\":\"selection\""), std::string::npos);
-  EXPECT_NE(events.find("ratio did best in coverage averaged over the flight (coverage_auc)"),
+  const FlownTwice run(dir);
+  EXPECT_NE(run.mission.find("name unknown_ratio"), std::string::npos);
+  EXPECT_NE(run.mission.find("goals 4"), std::string::npos);
+  EXPECT_EQ(run.mission.find("name auto"), std::string::npos);
+  EXPECT_NE(run.events.find("\"kind\":\"selection\""), std::string::npos);
+  EXPECT_NE(run.events.find("ratio did best in coverage averaged over the flight (coverage_auc)"),
             std::string::npos);
-  fs::remove(dir / "experience.info");  // what was selected by is no longer there: the run stands by itself
-  const Output again =
-      run_karst("fly " + first + "/mission.info --threads 1 --no-report --quiet --out " + second);
-  ASSERT_NE(again.code, 1) << again.text;
-  EXPECT_EQ(bytes_of(dir / "second" / "mission.info"), mission);
-  EXPECT_EQ(bytes_of(dir / "second" / "events.jsonl"), events);
 }
 
 TEST(PolicyAuto, TheMissionsTableWinsAndNothingElseIsAsked) {
@@ -81,6 +89,21 @@ TEST(PolicyAuto, TheMissionsTableWinsAndNothingElseIsAsked) {
   EXPECT_NE(mission.find("the mission's table says so"), std::string::npos);
 }
 
+// What the command line says of a later policy was forgotten where it named another policy, too.
+TEST(PolicyLater, OfTheCommandLineStaysWithAnotherPolicyAndThatOfTheFileGoes) {
+  const fs::path dir = fresh_folder("policy_later");
+  small_cave(dir, 3);
+  write(
+      dir / "mission.info",
+      "cave { file cave3.info }\npolicy { name nearest_frontier later { name deep_cave after \"9 s\" } }\n");
+  const std::string fly = "fly " + (dir / "mission.info").string() + " --policy highest_frontier --check ",
+                    of_file = (dir / "file.info").string(), of_line = (dir / "line.info").string();
+  EXPECT_EQ(run_karst(fly + of_file).code, 0);
+  EXPECT_EQ(bytes_of(of_file).find("after \"9 s\""), std::string::npos);
+  EXPECT_EQ(run_karst(fly + of_line + " --set policy.later.after=\"8 s\"").code, 0);
+  EXPECT_NE(bytes_of(of_line).find("after \"8 s\""), std::string::npos);
+}
+
 // A flight that changed its policy was not to be repeated: the block that it wrote was not read.
 TEST(PolicyAuto, ChangesItsMindOnceByTheMapAndIsRepeatedWithoutTheExperience) {
   const fs::path dir = fresh_folder("policy_auto_reconsidered");
@@ -89,23 +112,13 @@ TEST(PolicyAuto, ChangesItsMindOnceByTheMapAndIsRepeatedWithoutTheExperience) {
   write(dir / "mission.info",
         "cave { file cave3.info }\npolicy {\n name auto\n auto {\n reconsider \"8 s\"  otherwise "
         "lateral_frontier\n results experience.info\n } }\nmission { max_flight_time \"60 s\" }\n");
-  const std::string first = (dir / "first").string(), second = (dir / "second").string();
-  const Output flown =
-      run_karst("fly " + (dir / "mission.info").string() + " --threads 1 --no-report --quiet --out " + first);
-  ASSERT_NE(flown.code, 1) << flown.text;
-  const std::string mission = bytes_of(dir / "first" / "mission.info"),
-                    events = bytes_of(dir / "first" / "events.jsonl");
-  EXPECT_NE(events.find("from here on, after lateral_frontier: "), std::string::npos) << events;
-  EXPECT_NE(mission.find("after \"8 s\""), std::string::npos) << mission;
-  fs::remove(dir / "experience.info");
-  const Output again =
-      run_karst("fly " + first + "/mission.info --threads 1 --no-report --quiet --out " + second);
-  ASSERT_NE(again.code, 1) << again.text;
-  EXPECT_EQ(bytes_of(dir / "second" / "mission.info"), mission);
-  EXPECT_EQ(bytes_of(dir / "second" / "events.jsonl"), events);
+  const FlownTwice run(dir);
+  EXPECT_NE(run.events.find("from here on, after lateral_frontier: "), std::string::npos) << run.events;
+  EXPECT_NE(run.mission.find("after \"8 s\""), std::string::npos) << run.mission;
   const std::string fly = "fly " + (dir / "first/mission.info").string();
   EXPECT_TRUE(run_karst(fly + " --set policy.later.after=soon").says("policy.later: after: expected"));
   EXPECT_TRUE(run_karst(fly + " --set policy.later.name=no_such").says("no_such"));
+  EXPECT_TRUE(run_karst(fly + " --set policy.later.parameters.nope=1").says("policy.later")) << "the place";
   EXPECT_TRUE(run_karst(fly + " --record-requests").says("--record-requests"));
   EXPECT_TRUE(run_karst("fly " + (dir / "mission.info").string() + " --set policy.auto.otherwise=")
                   .says("names the policy until policy.auto.reconsider"));
