@@ -8,6 +8,9 @@
 namespace karst::core {
 namespace {
 
+/// The tracker's limits leave as much, see with_room_to_catch_up (flight.cpp).
+constexpr double kMayExceed_mps = 0.1;
+
 bool near_line(const std::vector<Vec3>& line, const Vec3& place) {
   for (std::size_t i = 0; i < line.size(); ++i)
     if (near_narrow_place({place}, line[i], line[std::min(i + 1, line.size() - 1)])) return true;
@@ -25,7 +28,11 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
            (near_narrow_place(path.narrow_places, a, b) && segment_clear(map, a, b, path.clear_by_m));
   };
   const Flight::CommittedSegment& committed = start.committed;
-  out.points = join_paths(committed.points, path.points, start.max_cut_m, clear);
+  // A parabola turns back before the committed segment's end, where the vehicle may be too fast still.
+  const auto slow_enough = [&](const std::vector<Vec3>& points) {
+    return committed.speed_mps < greatest_start_speed_mps(points, start.limits) + kMayExceed_mps;
+  };
+  out.points = join_paths(committed.points, path.points, start.max_cut_m, clear, slow_enough);
   out.heading.along_path = !vehicle.lidar;
   out.heading.start_heading_rad = committed.heading_rad;
   if (goal && std::isfinite(goal->heading_rad)) out.heading.goal_heading_rad = goal->heading_rad;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core_stack/common/install_location.h"
+#include "core_stack/planning/path/path.h"
 #include "core_stack/planning/trajectory/heading.h"
 
 namespace karst::core {
@@ -43,6 +44,30 @@ std::vector<double> turns(const std::vector<Vec3>& nodes) {
   return out;
 }
 
+/// At v_max the turn requires a_n = v_max^2 turn / spacing, which falls with the square of the speed. Never
+/// below v_min.
+double bend_speed_mps(double turn_rad, double spacing_m, const MotionLimits& limits) {
+  const double v = limits.max_speed_mps, a_n = v * v * turn_rad / spacing_m;
+  const double slow =
+      a_n > limits.max_acceleration_mps2 ? v * std::sqrt(limits.max_acceleration_mps2 / a_n) : v;
+  return std::max(slow, std::min(limits.min_speed_mps, limits.max_speed_mps));
+}
+
+/// What the acceleration across the path leaves along it: both together are within the limit.
+double left_along_mps2(double v_mps, double turn_rad, double spacing_m, const MotionLimits& limits) {
+  const double a = limits.max_acceleration_mps2, a_n = std::min(a, v_mps * v_mps * turn_rad / spacing_m);
+  return std::sqrt(a * a - a_n * a_n);
+}
+
+/// Lowers `v` so that the vehicle can slow down for each node's speed.
+void slow_down_in_time(std::vector<double>& v, const std::vector<double>& turn, double spacing_m,
+                       const MotionLimits& limits) {
+  for (std::size_t i = v.size() - 1; i-- > 0;)
+    v[i] =
+        std::min(v[i], std::sqrt(v[i + 1] * v[i + 1] +
+                                 2 * left_along_mps2(v[i + 1], turn[i + 1], spacing_m, limits) * spacing_m));
+}
+
 /// Speed at each node: limited in bends, and by the acceleration between nodes. `headings` limit it further
 /// where they turn with the path.
 std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, double start_speed_mps,
@@ -52,9 +77,7 @@ std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, dou
   const std::vector<double> turn = turns(nodes);
   std::vector<double> v(nodes.size(), limits.max_speed_mps);
   for (std::size_t i = 0; i < v.size(); ++i) {
-    // At v_max the turn requires a_n = v_max^2 turn / spacing, which falls with the square of the speed.
-    const double a_n = v[i] * v[i] * turn[i] / spacing_m;
-    if (a_n > a_max) v[i] *= std::sqrt(a_max / a_n);
+    v[i] = bend_speed_mps(turn[i], spacing_m, limits);
     if (i + 1 < v.size()) {
       const double heading_turn = std::abs(wrap_angle(headings[i + 1] - headings[i]));
       if (heading_turn > 1e-9)
@@ -138,6 +161,19 @@ TrajectorySample Trajectory::at(TimeNs t) const {
           wrap_angle(a.heading_rad + wrap_angle(b.heading_rad - a.heading_rad) * part)};
 }
 
+double greatest_start_speed_mps(const std::vector<Vec3>& points, const MotionLimits& limits) {
+  const double length_m = path_length_m(points);
+  if (length_m < 1e-6) return limits.max_speed_mps;
+  const std::vector<Vec3> nodes = evenly_spaced(points, kMaxSpacing_m);
+  const std::vector<double> turn = turns(nodes);
+  const double spacing_m = length_m / static_cast<double>(nodes.size() - 1);
+  std::vector<double> v;
+  for (const double t : turn) v.push_back(bend_speed_mps(t, spacing_m, limits));
+  v.back() = 0;
+  slow_down_in_time(v, turn, spacing_m, limits);
+  return v.front();
+}
+
 Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed_mps, TimeNs start,
                              const MotionLimits& limits, const HeadingPlan& heading, const SlowPlaces& slow) {
   Trajectory out;
@@ -148,11 +184,7 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
   HeadingCourse course(heading.start_heading_rad, limits, dt);
   out.samples.push_back({points.front(), wrap_angle(heading.start_heading_rad)});
 
-  const double length = [&points] {
-    double sum = 0;
-    for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
-    return sum;
-  }();
+  const double length = path_length_m(points);
   if (length > 1e-6) {
     const std::vector<Vec3> nodes = evenly_spaced(points, kMaxSpacing_m);
     const double spacing = length / static_cast<double>(nodes.size() - 1);

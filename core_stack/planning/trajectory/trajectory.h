@@ -61,6 +61,11 @@ struct HeadingPlan {
   std::optional<double> goal_heading_rad;  // reached over the last stretch and at the goal
 };
 
+/// The greatest speed at the beginning of a path from which the vehicle can slow down for each bend and for
+/// the end, m/s, with what a bend's acceleration leaves along the path. If it begins faster, its reference
+/// leaves the path.
+double greatest_start_speed_mps(const std::vector<Vec3>& points, const MotionLimits& limits);
+
 /// Samples `points` from `start_speed_mps` along the path to rest at its end. Accelerations along and across
 /// the path stay within the limits (up to sampling). The vehicle turns on the spot first where it must face
 /// the direction of flight and the path turns faster than the heading rate allows. A path that takes longer

@@ -92,6 +92,18 @@ TEST(Trajectory, ArrivingTooFastForABendItBrakesAllItCan) {
   }
 }
 
+TEST(Trajectory, TheGreatestStartSpeedIsThatFromWhichBendAndEndCanBeMet) {
+  const MotionLimits limits;
+  EXPECT_NEAR(greatest_start_speed_mps({{0, 0, 0}, {0.5, 0, 0}}, limits), std::sqrt(2.0),
+              1e-9);  // v^2 = 2 a s
+  EXPECT_EQ(greatest_start_speed_mps({{0, 0, 0}, {5, 0, 0}}, limits), limits.max_speed_mps);
+  // A turn back, which is flown at v_min.
+  const double least = limits.min_speed_mps;
+  EXPECT_NEAR(greatest_start_speed_mps({{0, 0, 0}, {0.4, 0, 0}, {-5, 0, 0}}, limits),
+              std::sqrt(least * least + 2 * limits.max_acceleration_mps2 * 0.4), 0.2);
+  EXPECT_EQ(greatest_start_speed_mps({{1, 2, 3}}, limits), limits.max_speed_mps) << "nothing to be flown";
+}
+
 TEST(Trajectory, SlowsDownInBends) {
   std::vector<Vec3> bend;
   for (double x = 0; x < 5; x += 0.1) bend.push_back({x, 0, 0});
