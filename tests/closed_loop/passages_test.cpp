@@ -26,12 +26,17 @@ nlohmann::json landed_flight(const std::string& cave, const std::filesystem::pat
 /// Brakes with the first scan behind a path that was appended in flight.
 int brakes_after_appending(const std::filesystem::path& run) {
   int brakes = 0;
+  bool appending = false;
   double appended_s = -1;
   std::istringstream events(bytes_of(run / "events.jsonl"));
   for (std::string line; std::getline(events, line);) {
     const auto event = nlohmann::json::parse(line);
     const double t_s = event["t"];
-    if (event["kind"] == "decision") appended_s = event["appending"] == true ? t_s : -1;
+    if (event["kind"] == "decision") {
+      appending = event["appending"];
+      appended_s = -1;
+    }
+    if (event["kind"] == "plan" && appending) appended_s = t_s;
     brakes +=
         event["kind"] == "safety" && event["action"] == "brake" && appended_s >= 0 && t_s < appended_s + 0.15;
   }

@@ -159,6 +159,7 @@ void Exploration::on_cycle(const CycleInput& input, const CycleResult& result, c
   const bool at_rest = onboard_.flight.at_rest(now);
   PathExecution& path = parts_.path;
   if (!parts_.phases.in(Phase::explore) || (path.blocked() && !at_rest) || path.outdated(input.now)) return;
+  if (input.appending && path.detour_due()) return;  // the map has closed what this was to follow
   if (result.goal || !at_rest) {
     idle_since_.reset();
   } else if (!idle_since_) {

@@ -72,6 +72,27 @@ TEST_F(ExplorationTest, AnAcceptedGoalIsFlownToClaimedAndReached) {
   EXPECT_EQ(told("\"reached\""), 1u);
 }
 
+// As it was: the next path was appended to one that the map had closed while the policy was asked, and the
+// vehicle braked for it.
+TEST_F(ExplorationTest, NothingIsAppendedToAPathThatTheMapHasClosedMeanwhile) {
+  begin();
+  answer = [&](const DecisionRequest&) { return go_to({asked == 1 ? 5.0 : 9.0, 0, 1}); };
+  bool appends = false;
+  for (int i = 0; i < 60 && !appends; ++i) {
+    exploration.step();
+    appends = goals.goal() && onboard.flight.remaining_s(now()) < onboard.options.mission.append_before_s;
+    if (!appends) advance(0.1);
+  }
+  ASSERT_TRUE(appends) << events();
+  path.ask_for_detour();
+  advance(0.7);
+  EXPECT_EQ(told("\"appending\":true"), 1u) << events();
+  EXPECT_FALSE(goals.next());
+  EXPECT_EQ(told("\"plan\""), 1u);
+  steps(1);
+  EXPECT_EQ(goals.goal()->position, Vec3(9, 0, 1)) << "the detour is taken from where it could stop";
+}
+
 TEST_F(ExplorationTest, ThePolicysWishToGoHomeIsFollowedAtTheEndOfTheRound) {
   begin();
   answer = [](const DecisionRequest&) {
