@@ -1,5 +1,6 @@
 // Narrow corridors and shafts, drawn to the centimetre and flown.
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tests/closed_loop/command.h"
 #include "tests/closed_loop/drawn_cave.h"
@@ -36,7 +37,7 @@ int brakes_after_appending(const std::filesystem::path& run) {
       appending = event["appending"];
       appended_s = -1;
     }
-    if (event["kind"] == "plan" && appending) appended_s = t_s;
+    if (event["kind"] == "plan") appended_s = std::exchange(appending, false) ? t_s : -1;
     brakes +=
         event["kind"] == "safety" && event["action"] == "brake" && appended_s >= 0 && t_s < appended_s + 0.15;
   }

@@ -267,12 +267,13 @@ Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) co
   return out;
 }
 
-/// The acceleration reaches that of braking with limited jerk: x = v T + a T^2 / 2 - j T^3 / 6 until then, or
-/// until the vehicle stands.
+/// The acceleration falls to that of braking at the greatest jerk: x = v T + a T^2 / 2 - j T^3 / 6 until
+/// then, or until the vehicle stands.
 Flight::CommittedSegment Flight::until_stop(TimeNs t) const {
   const double v = velocity_at(t).norm(), braking = braking_mps2(), jerk = limits_.max_jerk_mps3;
   if (v < 1e-3) return committed_segment(t, 0);
-  const double a = std::clamp(departure_at(t).acceleration_mps2.dot(velocity_at(t)) / v, -braking, braking);
+  const double a = std::clamp(departure_at(t).acceleration_mps2.dot(velocity_at(t)) / v, -braking,
+                              limits_.max_acceleration_mps2);
   const double brakes_s = (a + braking) / jerk, stands_s = (a + std::sqrt(a * a + 2 * jerk * v)) / jerk;
   const double T = std::min(brakes_s, stands_s), then_mps = std::max(0.0, v + a * T - jerk * T * T / 2);
   return committed_segment(

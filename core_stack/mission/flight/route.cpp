@@ -8,8 +8,8 @@
 namespace karst::core {
 namespace {
 
-/// The tracker's limits leave as much, see with_room_to_catch_up (flight.cpp).
-constexpr double kMayExceed_mps = 0.1;
+/// The tracker's limit of speed leaves as much, see with_room_to_catch_up (flight.cpp).
+constexpr double kMayExceed = 0.05;
 
 bool near_line(const std::vector<Vec3>& line, const Vec3& place) {
   for (std::size_t i = 0; i < line.size(); ++i)
@@ -28,9 +28,14 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
            (near_narrow_place(path.narrow_places, a, b) && segment_clear(map, a, b, path.clear_by_m));
   };
   const Flight::CommittedSegment& committed = start.committed;
-  // A parabola turns back before the committed segment's end, where the vehicle may be too fast still.
+  // A parabola turns back before the committed segment's end, where the vehicle may be too fast still. A bend
+  // of that segment itself speaks against no parabola.
+  std::vector<Vec3> plain = committed.points;
+  plain.insert(plain.end(), path.points.begin() + 1, path.points.end());
+  const double needed_mps =
+      std::min(committed.speed_mps / (1 + kMayExceed), greatest_start_speed_mps(plain, start.limits));
   const auto slow_enough = [&](const std::vector<Vec3>& points) {
-    return committed.speed_mps < greatest_start_speed_mps(points, start.limits) + kMayExceed_mps;
+    return greatest_start_speed_mps(points, start.limits) >= needed_mps;
   };
   out.points = join_paths(committed.points, path.points, start.max_cut_m, clear, slow_enough);
   out.heading.along_path = !vehicle.lidar;

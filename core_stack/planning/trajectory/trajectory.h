@@ -62,8 +62,8 @@ struct HeadingPlan {
 };
 
 /// The greatest speed at the beginning of a path from which the vehicle can slow down for each bend and for
-/// the end, m/s, with what a bend's acceleration leaves along the path. If it begins faster, its reference
-/// leaves the path.
+/// the end, m/s. The acceleration that a bend takes is not there for braking. If the vehicle begins faster,
+/// its reference leaves the path.
 double greatest_start_speed_mps(const std::vector<Vec3>& points, const MotionLimits& limits);
 
 /// Samples `points` from `start_speed_mps` along the path to rest at its end. Accelerations along and across
