@@ -2,6 +2,7 @@
 // side by side overlap.
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "core_stack/common/error.h"
 #include "plugins/replay/bag/bag.h"
