@@ -20,7 +20,7 @@ class BagFolder final : public Bag {
       part.name = fs::path(path).filename().string();
       part.bag = open_bag(path);
       part.begin = part.bag->begin();
-      for (const Connection& c : part.bag->connections()) part.number.push_back(number_of(c));
+      number_connections(part);
       parts_.push_back(std::move(part));
     }
   }
@@ -85,11 +85,18 @@ class BagFolder final : public Bag {
   void advance(Part& part) {
     part.head = part.bag->next();
     if (part.head) {
+      number_connections(part);
       part.head->connection = part.number.at(part.head->connection);
     } else {
       faults_.add(part.bag->faults(), part.name + ", ");
       part.bag.reset();
     }
+  }
+
+  /// While it is read, a bag may find connections that its summary does not list.
+  void number_connections(Part& part) {
+    const std::vector<Connection>& all = part.bag->connections();
+    while (part.number.size() < all.size()) part.number.push_back(number_of(all[part.number.size()]));
   }
 
   std::size_t number_of(const Connection& c) {

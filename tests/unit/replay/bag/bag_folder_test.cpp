@@ -114,6 +114,28 @@ TEST(Bag, McapMessagesOutsideOfChunksComeInTheOrderOfTime) {
   EXPECT_EQ(read(*bag).times, (std::vector<core::TimeNs>{0, 100, 200, 500, 900}));
 }
 
+TEST(BagFolder, AConnectionThatASummaryDoesNotListIsRead) {
+  Folder dir;
+  std::vector<test::WrittenMessage> messages = every(100, 0, 0, 4);
+  for (const test::WrittenMessage& m : every(100, 1, 0, 4)) messages.push_back(m);
+  std::string bytes = test::mcap_file(kTwoTopics, messages, {Compression::none, true, 20});
+  std::size_t channels = 0;
+  for (std::size_t at = 8; at + 9 < bytes.size();) {
+    std::uint64_t length = 0;
+    std::memcpy(&length, bytes.data() + at + 1, 8);
+    if (bytes[at] == 4 && ++channels == 2) bytes[at] = 0x7f;  // the summary's of /b: no such opcode
+    at += 9 + length;
+  }
+  ASSERT_EQ(channels, 2u);
+  dir.write("a.mcap", bytes);
+  const auto bag = open_bag(dir.path().string());
+  ASSERT_EQ(bag->connections().size(), 1u) << "before the chunk is read";
+  const Read all = read(*bag);
+  EXPECT_EQ(all.times.size(), 8u);
+  EXPECT_EQ(std::count(all.topics.begin(), all.topics.end(), "/b"), 4);
+  EXPECT_EQ(bag->faults().count(), 0u);
+}
+
 TEST(BagFolder, AllFaultsOfItsBagsAreCounted) {
   Folder dir;
   for (const char* name : {"s_0.mcap", "s_1.mcap"}) {
