@@ -101,7 +101,7 @@ std::vector<double> LoopClosing::uncertainty_from(std::size_t submap) const {
     const auto [m, i] = open.top();
     open.pop();
     if (m > least[i]) continue;
-    const auto along = [&](std::size_t k) {
+    const auto along = [&, m = m, i = i](std::size_t k) {  // clang 14 captures no structured bindings
       reach(k, m + std::abs(submaps_[k].uncertainty_m - submaps_[i].uncertainty_m) +
                    options_.drift * std::abs(submaps_[k].path_begin_m - submaps_[i].path_begin_m));
     };
