@@ -65,7 +65,9 @@ BagRecording open_bag_recording(const std::string& path, const std::string& info
         }))
       throw no_poses(path, r.info.truth_topic);
   }
-  r.layout = layout_of(r.info, r.info_file.empty() ? path : r.info_file);
+  const std::string& said_by = r.info_file.empty() ? path : r.info_file;
+  check_recording_info(r.info, said_by);
+  r.layout = layout_of(r.info, said_by);
   r.assumptions = std::move(guess.grounds);
   return r;
 }

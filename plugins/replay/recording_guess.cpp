@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core_stack/common/error.h"
 #include "core_stack/common/euler_angles.h"
 #include "core_stack/common/printable.h"
 #include "plugins/replay/scan_files/decimal_time.h"
@@ -40,6 +41,8 @@ Kind kind_of(const CloudFacts& c) {
     return {"Hesai or RoboSense", "its points have ring and timestamp (float64)"};
   if (has_field(c, "ring") && has_field(c, "time", ValueType::float32))
     return {"Velodyne", "its points have ring and time (float32)"};
+  if (has_field(c, "t", ValueType::uint32) && has_field(c, "intensity"))
+    return {"karst", "its points have intensity and t (uint32), as karst exports them"};
   return {"unknown", "its fields are those of no driver that karst knows"};
 }
 
@@ -170,7 +173,11 @@ class Guesser {
   }
 
   void guess_origin(const CloudFacts& lidar, double unit_s) {
-    if (given("time.of")) return ground("They count from what the recording file says.");
+    if (given("time.of"))
+      return ground(guess.info.time_of == TimeOrigin::absolute
+                        ? "They count from a fixed moment, as given."
+                        : std::string("They count from the sweep's ") + core::name_of(guess.info.time_of) +
+                              ", as given.");
     const CloudSample &first = lidar.samples.front(), &last = lidar.samples.back();
     const double stamps_s = core::seconds(last.stamp - first.stamp),
                  times_s = (last.last_time - first.last_time) * unit_s,
@@ -245,7 +252,7 @@ class Guesser {
         mount_by_transforms(lidar, imu, true) || (imu_by_hand && mount_by_transforms(lidar, imu, false));
     const bool by_hand = given("lidar.position") || given("lidar.rotation") || given("imu.rotation");
     if (!mounted && !by_hand) ground("The body's frame is the LiDAR's, " + lidar.frame + ".");
-    if (by_hand) ground("Of the mounting, what the recording file says is used.");
+    if (by_hand) ground("Of the mounting, what is given is used.");
     if (!imu || guess.info.imu_topic == imu->topic) return;
     if (!imu_by_hand)
       return ground("The IMU " + imu->topic + " is not used: no transform tells how its frame, " +
@@ -285,6 +292,24 @@ class Guesser {
   const std::set<std::string>& keys_;
 };
 
+/// The settings that the bag itself has, except `keys`. What is wrong with one is a doubt.
+void apply(const RecordedSettings& settings, const std::set<std::string>& keys, RecordingInfo& info,
+           std::vector<std::string>* doubts) {
+  core::OptionTable table;
+  describe(table, info);
+  for (const auto& [key, value] : settings) try {
+      if (!keys.contains(key)) table.set(std::string("the bag's record ") + kRecordedSettings, key, value);
+    } catch (const core::InputError& e) {
+      if (doubts) doubts->push_back(std::string(e.what()) + ": give the key with --info.");
+    }
+}
+std::string text_of(const RecordedSettings& settings, const std::set<std::string>& keys) {
+  std::string text;
+  for (const auto& [key, value] : settings)
+    if (!keys.contains(key)) text += (text.empty() ? "" : ", ") + key + " " + value;
+  return text;
+}
+
 bool has_controls(std::string_view text) {
   return std::any_of(text.begin(), text.end(),
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
@@ -303,9 +328,20 @@ std::string info_text(std::string_view text) {
 
 RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given,
                                const std::set<std::string>& keys) {
-  Guesser guesser(survey, given, keys);
+  RecordingInfo known = given;
+  std::vector<std::string> doubts;
+  apply(survey.settings, keys, known, &doubts);
+  std::set<std::string> known_keys = keys;
+  for (const auto& [key, value] : survey.settings) known_keys.insert(key);
+  Guesser guesser(survey, known, known_keys);
+  if (const std::string text = text_of(survey.settings, keys); !text.empty())
+    guesser.guess.grounds.push_back(std::string("The bag's record ") + kRecordedSettings + " gives " + text +
+                                    ".");
   guesser.work();
-  return std::move(guesser.guess);
+  RecordingGuess guess = std::move(guesser.guess);
+  apply(survey.settings, keys, guess.info, nullptr);  // above the transforms
+  guess.doubts.insert(guess.doubts.begin(), doubts.begin(), doubts.end());
+  return guess;
 }
 
 std::string comment_text(std::string_view text) {

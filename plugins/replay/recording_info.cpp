@@ -120,14 +120,35 @@ RecordingInfo read_recording_info(const std::string& file, RecordingInfo info) {
   core::OptionTable table;
   describe(table, info);
   table.read(file, core::read_info(file));
-  layout_of(info, file);  // throws now if a key is wrong
+  check_recording_info(info, file);
+  if (info.stamp_from == StampSource::file && info.stamp_file.empty())
+    throw InputError(file, "stamp.file", "expected the file that stamp.from asks for");
+  return info;
+}
+
+void check_recording_info(const RecordingInfo& info, const std::string& file) {
+  layout_of(info, file);
   if (info.rings > 1 && info.lowest_rad >= info.highest_rad)
     throw InputError(file, "rings.lowest", "must lie below rings.highest");
   if (info.rings_by == RingSource::elevation && info.rings == 0)
     throw InputError(file, "rings.count", "expected the number of rings, which rings.by elevation needs");
-  if (info.stamp_from == StampSource::file && info.stamp_file.empty())
-    throw InputError(file, "stamp.file", "expected the file that stamp.from asks for");
-  return info;
+}
+
+RecordedSettings settings_for_bag(const RecordingInfo& info) {
+  RecordingInfo values = info, usual;
+  core::OptionTable table, defaults;
+  describe(table, values);
+  describe(defaults, usual);
+  RecordedSettings settings;
+  for (std::size_t i = 0; i < table.rows().size(); ++i) {
+    const core::OptionTable::Row& row = table.rows()[i];
+    const std::string value = core::value_text(row);
+    const bool always = row.key == "compensated" || row.key.starts_with("lidar.");
+    const bool if_unusual = row.key.starts_with("time.") || row.key.starts_with("rings.");
+    if (always || (if_unusual && value != core::value_text(defaults.rows()[i])))
+      settings.emplace(row.key, value);
+  }
+  return settings;
 }
 
 std::set<std::string> keys_in(const std::string& file) {

@@ -5,6 +5,7 @@
 
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
+#include "plugins/replay/bag/bag.h"
 #include "plugins/replay/scan_files/scan_file.h"
 
 namespace karst::replay {
@@ -98,6 +99,10 @@ struct RecordingLayout {
 RecordingInfo read_recording_info(const std::string& file, RecordingInfo info = {});
 /// The keys that the file has, such as "lidar.position".
 std::set<std::string> keys_in(const std::string& file);
+/// Throws InputError if the keys do not fit each other.
+void check_recording_info(const RecordingInfo& info, const std::string& file);
+/// What a bag of these scans cannot say itself: times, mounting, range and rings.
+RecordedSettings settings_for_bag(const RecordingInfo& info);
 RecordingLayout layout_of(const RecordingInfo& info, const std::string& file);
 
 }  // namespace karst::replay

@@ -1,6 +1,8 @@
 #include "sdk/flight/recorded_scan.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -47,6 +49,13 @@ std::string rotation_text(const core::Quat& q) {
   return core::format_text("%.9g %.9g %.9g", degrees.x() + 0.0, degrees.y() + 0.0, degrees.z() + 0.0);
 }
 
+/// Of the float nearest to 0.3, "0.3".
+std::string shortest_text(float v) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), v).ptr;
+  return {buffer.data(), end};
+}
+
 }  // namespace
 
 core::TimeNs sweep_begin(const LidarScan& scan) { return scan.stamp - scan.model->period; }
@@ -75,10 +84,10 @@ std::string recording_info_of(const core::LidarModel& lidar) {
   const Vec3& p = lidar.T_body_lidar.position;
   return core::format_text(
       "scans \"*.pcd\"\nstamp { from names unit ns of start }\ntime { unit ns of start period \"%.9g s\" }\n"
-      "lidar { position \"%.9g %.9g %.9g\" rotation \"%s\" min_range \"%.9g m\" max_range \"%.9g m\" }\n"
+      "lidar { position \"%.9g %.9g %.9g\" rotation \"%s\" min_range \"%s m\" max_range \"%s m\" }\n"
       "rings { by %s }\nimu { file imu.csv columns \"t ax ay az wx wy wz\" }\n",
       core::seconds(lidar.period), p.x(), p.y(), p.z(), rotation_text(lidar.T_body_lidar.orientation).c_str(),
-      static_cast<double>(lidar.min_range_m), static_cast<double>(lidar.max_range_m),
+      shortest_text(lidar.min_range_m).c_str(), shortest_text(lidar.max_range_m).c_str(),
       lidar.has_rings() ? "field" : "none");
 }
 

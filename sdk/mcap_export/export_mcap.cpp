@@ -63,6 +63,8 @@ McapExport export_mcap(const fs::path& directory, const fs::path& file, std::opt
 
   PartFile part(file);
   McapWriter writer(part.stream(), {.profile = "ros2", .library = "karst " + version});
+  if (const auto settings = recorded_settings(run); !settings.empty())
+    writer.metadata(replay::kRecordedSettings, settings);  // first, so that a file that is cut has it
   McapExport out;
   out.topics = write_topics(writer, std::move(topics));
   // The profiles of quality of service are numbers, as Humble writes them. A later rosbag2 expects words,

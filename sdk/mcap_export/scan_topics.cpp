@@ -157,4 +157,12 @@ std::vector<Topic> scan_topics(const evaluation::RunRecord& run, const FlightClo
   return topics;
 }
 
+replay::RecordedSettings recorded_settings(const evaluation::RunRecord& run) try {
+  const fs::path file = run.directory / "scans/recording.info";
+  if (!fs::exists(file)) return {};
+  return replay::settings_for_bag(replay::read_recording_info(file.string()));
+} catch (const core::InputError&) {
+  return {};  // reported with the topics
+}
+
 }  // namespace karst::mcap

@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "plugins/replay/bag/bag.h"
 #include "sdk/evaluation/record/run_record.h"
 #include "sdk/mcap_export/topic.h"
 
@@ -12,5 +13,9 @@ namespace karst::mcap {
 /// when the topic comes to it: it outlives the topics.
 std::vector<Topic> scan_topics(const evaluation::RunRecord& run, const FlightClock& clock,
                                std::vector<std::string>& problems);
+
+/// What the messages of these topics cannot say: a metadata record from which `karst replay` takes it. Empty
+/// without scans.
+replay::RecordedSettings recorded_settings(const evaluation::RunRecord& run);
 
 }  // namespace karst::mcap

@@ -24,6 +24,12 @@ Output replay(const fs::path& recording, const fs::path& run) {
   return run_karst("replay " + recording.string() + " --quiet --no-report --out " + run.string());
 }
 
+/// "points N used, M left out": the same only with the same limits of range.
+std::string points_line(const Output& replayed) {
+  const std::size_t begin = replayed.text.find("  points  ");
+  return begin == std::string::npos ? "" : replayed.text.substr(begin, replayed.text.find('\n', begin) - begin);
+}
+
 /// Root mean square of the distance between two trajectories, after alignment.
 double distance_m(const fs::path& replayed, const fs::path& trajectory) {
   const Output errors = run_karst("evaluate " + replayed.string() + " --truth " + trajectory.string());
@@ -57,6 +63,8 @@ void expect_replays(const fs::path& run) {
   const Output from_file = replay(file, again);
   ASSERT_EQ(from_file.code, 0) << from_file.text;
   EXPECT_GT(bytes_of(again / "trajectory.tum").size(), 80 * points);
+  EXPECT_NE(points_line(from_file), "");
+  EXPECT_EQ(points_line(from_file), points_line(from_folder));
   EXPECT_EQ(bytes_of(again / "trajectory.tum"), bytes_of(replayed / "trajectory.tum"));
 }
 

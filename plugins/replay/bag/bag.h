@@ -1,6 +1,7 @@
 // Bags: recorded messages of ROS 1 (.bag) and ROS 2 (.mcap, .db3), in the order of time. docs/replay.md
 #pragma once
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,6 +57,11 @@ class FaultLog {
 
 constexpr core::TimeNs unknown_begin() { return std::numeric_limits<core::TimeNs>::min(); }
 
+/// Keys of a recording.info with their values.
+using RecordedSettings = std::map<std::string, std::string>;
+/// Name of the MCAP metadata record in which `karst export` writes them.
+constexpr const char* kRecordedSettings = "karst.recording";
+
 class Bag {
  public:
   virtual ~Bag() = default;
@@ -68,6 +74,8 @@ class Bag {
   virtual std::optional<BagMessage> next() = 0;
   /// What could not be read until now.
   virtual const FaultLog& faults() const = 0;
+  /// What the file itself says of its recording, beside messages; known from the beginning.
+  virtual RecordedSettings recorded_settings() const { return {}; }
 };
 
 /// True for .bag, .mcap and .db3, also where they are compressed as files (which open_bag refuses).

@@ -20,6 +20,7 @@ class BagFolder final : public Bag {
       part.name = fs::path(path).filename().string();
       part.bag = open_bag(path);
       part.begin = part.bag->begin();
+      if (settings_.empty()) settings_ = part.bag->recorded_settings();
       number_connections(part);
       parts_.push_back(std::move(part));
     }
@@ -27,6 +28,7 @@ class BagFolder final : public Bag {
 
   const std::vector<Connection>& connections() const override { return connections_; }
   const FaultLog& faults() const override { return faults_; }
+  RecordedSettings recorded_settings() const override { return settings_; }
 
   void select(std::vector<bool> wanted) override {
     for (Part& part : parts_) {
@@ -111,6 +113,7 @@ class BagFolder final : public Bag {
 
   std::vector<Part> parts_;
   std::vector<Connection> connections_;
+  RecordedSettings settings_;         // of the first part that has any
   std::optional<std::size_t> taken_;  // part of the last message
   FaultLog faults_;
 };

@@ -137,6 +137,7 @@ BagSurvey survey_bag(const std::string& path, SurveyExtent extent, const FieldNa
   }
   BagSurvey survey = std::move(surveyor.survey);
   survey.whole = ended;
+  survey.settings = bag->recorded_settings();
   survey.faults.add(bag->faults());
   return survey;
 }

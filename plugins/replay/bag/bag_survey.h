@@ -47,6 +47,7 @@ struct BagSurvey {
   std::vector<FrameTransform> transforms;  // of /tf_static
   core::TimeNs first = 0, last = 0;
   bool whole = false;  // read to the end
+  RecordedSettings settings;
   FaultLog faults;
 };
 

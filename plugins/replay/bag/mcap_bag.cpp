@@ -14,6 +14,7 @@ enum McapOpcode : std::uint8_t {
   kMessage = 0x05,
   kChunk = 0x06,
   kChunkIndex = 0x08,
+  kMetadata = 0x0C,
 };
 constexpr std::string_view kMcapMagic("\x89MCAP0\r\n", 8);
 constexpr std::uint64_t kHead = 9;                    // of a record: opcode and length
@@ -34,6 +35,8 @@ class McapBag final : public ChunkedBag {
     rebuild_index(!whole || !has_summary_);
     finish_opening();
   }
+
+  RecordedSettings recorded_settings() const override { return settings_; }
 
  private:
   struct Schema {
@@ -97,6 +100,15 @@ class McapBag final : public ChunkedBag {
     }
   }
 
+  void take_metadata(const std::string& record) {
+    ByteCursor at{Bytes(record)};
+    if (at.take_text() != kRecordedSettings) return;
+    for (ByteCursor entries(at.take_counted()); entries.left() > 0;) {
+      const std::string key(entries.take_text());
+      settings_.emplace(key, entries.take_text());
+    }
+  }
+
   /// Goes from record to record. False where the file is damaged or cut.
   bool find_records(std::uint64_t offset) {
     std::optional<ChunkPlace> loose;
@@ -132,6 +144,8 @@ class McapBag final : public ChunkedBag {
             take_description(opcode, Bytes(record));
             if (opcode == kChannel) ++channels_outside_;
           }
+          if (opcode == kMetadata && length <= kMaxDescription)
+            take_metadata(read_at(offset + kHead, length));
           if (opcode == kChunk) channels_outside_ = 0;  // only those after the last chunk are a summary
           if (opcode == kFooter) {
             has_summary_ = channels_outside_ > 0;
@@ -213,6 +227,7 @@ class McapBag final : public ChunkedBag {
   }
 
   std::map<std::uint16_t, Schema> schemas_;
+  RecordedSettings settings_;
   std::size_t channels_outside_ = 0;
   bool has_summary_ = false;
 };

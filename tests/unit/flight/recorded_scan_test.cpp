@@ -64,6 +64,13 @@ void expect_same(const core::Sweep& a, const core::Sweep& b) {
   }
 }
 
+TEST(RecordedScan, ItsRangeIsSaidInTheFewestDigits) {
+  const auto model = small_lidar();
+  model->min_range_m = 0.3f;
+  EXPECT_NE(recording_info_of(*model).find("min_range \"0.3 m\""), std::string::npos)
+      << recording_info_of(*model);
+}
+
 TEST(RecordedScan, ReadBackIsTheSweepOfTheFlight) {
   const LidarScan scan = scan_of(small_lidar(), 1230 * kMillisecond);
   const test::Folder folder;

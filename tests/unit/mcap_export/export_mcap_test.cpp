@@ -10,6 +10,8 @@
 #include <set>
 
 #include "core_stack/common/error.h"
+#include "plugins/replay/bag/bag.h"
+#include "plugins/replay/recording_source.h"
 #include "sdk/evaluation/record/run_record.h"
 #include "sdk/mcap_export/event_words.h"
 #include "tests/unit/evaluation/fake_run.h"
@@ -253,6 +255,58 @@ TEST_F(ExportMcap, ADamagedScanEndsItsTopicAndIsReported) {
     EXPECT_TRUE(std::any_of(made.problems.begin(), made.problems.end(), [&](const std::string& p) {
       return p.find(place) != std::string::npos && p.find("left out") != std::string::npos;
     })) << place;
+}
+
+void append(std::string& bytes, auto value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// Returns between the least and the greatest range of the LiDAR, some nearer than a bag's default of 0.5 m.
+TEST_F(ExportMcap, TheFileReplaysWithTheRangeOfItsRecording) {
+  fs::create_directories(run_ / "scans");
+  std::ofstream(run_ / "scans/recording.info")
+      << "scans \"*.pcd\"\nstamp { from names unit ns of start }\ntime { unit ns of start period \"0.1 s\" }\n"
+         "lidar { position \"0 0 0.1\" rotation \"0 30.1234567891 0\" min_range \"0.3 m\" max_range \"150 m\" }\n"
+         "rings { by field }\n";
+  constexpr int kPoints = 50;
+  for (int scan = 1; scan <= 3; ++scan) {
+    std::ofstream pcd(run_ / "scans" / (std::to_string(scan * 100'000'000) + ".pcd"));
+    pcd << "VERSION 0.7\nFIELDS x y z intensity t ring\nSIZE 4 4 4 4 4 2\nTYPE F F F F U U\n"
+           "COUNT 1 1 1 1 1 1\nWIDTH "
+        << kPoints << "\nHEIGHT 1\nPOINTS " << kPoints << "\nDATA binary\n";
+    for (int i = 0; i < kPoints; ++i) {
+      const float range = i % 3 == 0 ? 0.4f : i % 3 == 1 ? 5.0f : 140.0f;
+      std::string point;
+      for (const float v : {range, 0.0f, 0.0f, 1.0f}) append(point, v);
+      append(point, static_cast<std::uint32_t>(i * 1'000'000));
+      append(point, static_cast<std::uint16_t>(i % 4));
+      pcd << point;
+    }
+  }
+  exported();
+  const replay::RecordingSource from_folder = replay::open_source((run_ / "scans").string(), ""),
+                                from_file = replay::open_source(file_.string(), "");
+  EXPECT_EQ(from_file.info.min_range_m, 0.3);
+  EXPECT_EQ(from_file.info.max_range_m, 150);
+  EXPECT_EQ(from_file.info.lidar_rotation, "0 30.1234567891 0");
+  for (int scan = 0; scan < 3; ++scan) {
+    replay::ReadNotes notes;
+    const auto a = from_folder.sensors->next_sweep(notes), b = from_file.sensors->next_sweep(notes);
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ(a->points.size(), std::size_t{kPoints});
+    ASSERT_EQ(b->points.size(), std::size_t{kPoints});
+    for (std::size_t i = 0; i < kPoints; ++i) EXPECT_EQ(a->points[i].position, b->points[i].position);
+    EXPECT_TRUE(a->T_body_lidar.orientation.isApprox(b->T_body_lidar.orientation, 0));
+  }
+  // A recording file goes before it.
+  const fs::path info = folder_.path() / "other.info";
+  std::ofstream(info) << "lidar { min_range \"1 m\" }\n";
+  const replay::RecordingInfo given = replay::open_source(file_.string(), info.string()).info;
+  EXPECT_EQ(given.min_range_m, 1);
+  EXPECT_EQ(given.max_range_m, 150);
+  // What is cut has it too.
+  fs::resize_file(file_, fs::file_size(file_) * 9 / 10);
+  EXPECT_EQ(replay::open_bag(file_.string())->recorded_settings().at("lidar.min_range"), "0.3 m");
 }
 
 TEST(EventWords, TellStateAndReason) {
