@@ -30,6 +30,15 @@ InputError no_poses(const std::string& path, const std::string& topic) {
           "has no nav_msgs/Odometry or geometry_msgs/PoseStamped, which bag.truth asks for"};
 }
 
+/// What is missing may lie where the bag is damaged.
+std::string damage_text(const FaultLog& faults) {
+  if (faults.count() == 0) return "";
+  std::string text = " The bag is damaged:";
+  for (std::size_t i = 0; i < std::min<std::size_t>(faults.first().size(), 3); ++i)
+    text += (i == 0 ? " " : "; ") + faults.first()[i].place + ": " + faults.first()[i].reason;
+  return text + (faults.count() > 3 ? "; and " + std::to_string(faults.count() - 3) + " more." : ".");
+}
+
 }  // namespace
 
 BagRecording open_bag_recording(const std::string& path, const std::string& info_file) {
@@ -52,7 +61,7 @@ BagRecording open_bag_recording(const std::string& path, const std::string& info
   if (!guess.doubts.empty()) {
     std::string all;
     for (const std::string& d : guess.doubts) all += (all.empty() ? "" : " ") + d;
-    throw InputError(path, "", all + " See karst recording info.");
+    throw InputError(path, "", all + damage_text(survey.faults) + " See karst recording info.");
   }
   // What the file says goes before what was guessed.
   r.info = r.info_file.empty() ? guess.info : read_recording_info(r.info_file, guess.info);

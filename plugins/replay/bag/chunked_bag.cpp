@@ -46,6 +46,12 @@ std::string ChunkedBag::read_at(std::uint64_t offset, std::uint64_t size) {
   return bytes;
 }
 
+std::string ChunkedBag::skipped_text(std::uint64_t byte, std::optional<std::uint64_t> next) const {
+  if (next) return "; reading goes on with the chunk at byte " + std::to_string(*next);
+  if (byte >= file_bytes_) return "";
+  return "; the " + std::to_string(file_bytes_ - byte) + " bytes from there on are not read";
+}
+
 void ChunkedBag::connect(std::uint32_t number, Connection connection) {
   if (by_number_.emplace(number, connections_.size()).second) connections_.push_back(std::move(connection));
 }

@@ -43,6 +43,8 @@ class ChunkedBag : public Bag {
   void fault(std::uint64_t byte, const std::string& reason) {
     faults_.add("byte " + std::to_string(byte), reason);
   }
+  /// What follows the reason of a fault at `byte`: where reading goes on, if anywhere.
+  std::string skipped_text(std::uint64_t byte, std::optional<std::uint64_t> next) const;
   /// The number under which the format knows a connection, such as an MCAP channel's. The first description
   /// wins.
   void connect(std::uint32_t number, Connection connection);

@@ -2,6 +2,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 
@@ -25,6 +26,7 @@ class Db3Bag final : public Bag {
   explicit Db3Bag(const std::string& path) : path_(path), db_(open(path)) {
     steps_left_ = kMinSteps + kStepsAByte * static_cast<std::int64_t>(std::filesystem::file_size(path));
     sqlite3_progress_handler(db_.get(), kStepsAtOnce, &Db3Bag::is_too_long, this);
+    note_if_cut();
     read_topics();
     // By the index of times where there is one; the messages themselves are not sorted, but their numbers.
     order_ = prepare("SELECT rowid, topic_id, timestamp FROM messages ORDER BY timestamp, rowid");
@@ -125,6 +127,24 @@ class Db3Bag final : public Bag {
                                    ". Copy both files, and join the copies: sqlite3 COPY.db3 'PRAGMA "
                                    "journal_mode=DELETE; VACUUM'");
     }
+  }
+
+  /// The header has the size of a page at byte 16 and the number of pages at byte 28, big-endian
+  /// (https://www.sqlite.org/fileformat.html).
+  void note_if_cut() {
+    std::array<unsigned char, 32> head{};
+    core::open_input(path_, core::kMaxDataFileBytes).read(reinterpret_cast<char*>(head.data()), head.size());
+    const auto number = [&](std::size_t at, std::size_t bytes) {
+      std::uint64_t v = 0;
+      for (std::size_t i = at; i < at + bytes; ++i) v = v << 8 | head[i];
+      return v;
+    };
+    const std::uint64_t page_bytes = number(16, 2) == 1 ? 65536 : number(16, 2),
+                        announced = page_bytes * number(28, 4), there = std::filesystem::file_size(path_);
+    if (there < announced)
+      faults_.add("byte " + std::to_string(there),
+                  "the file ends here, and its header says " + std::to_string(announced) +
+                      " bytes: it is cut, and only what SQLite still finds is read");
   }
 
   Statement prepare(const char* sql) const {

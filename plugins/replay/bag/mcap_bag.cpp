@@ -21,6 +21,8 @@ constexpr std::uint64_t kHead = 9;                    // of a record: opcode and
 constexpr std::uint64_t kFooterBytes = kHead + 20;    // the last record, before the last magic
 constexpr std::uint64_t kMaxDescription = 16u << 20;  // a schema or channel that is larger is refused
 constexpr std::uint64_t kLooseBytes = 4u << 20;       // messages outside chunks are read so many at a time
+constexpr std::uint64_t kChunkHead = kHead + 40;      // without the name of its compression
+constexpr std::uint64_t kMaxName = 4;                 // "zstd"
 constexpr std::uint64_t kMaxMcapTime = std::numeric_limits<std::int64_t>::max();
 
 std::string_view text_of(Bytes b) { return {b.data(), b.size()}; }
@@ -100,17 +102,40 @@ class McapBag final : public ChunkedBag {
     }
   }
 
-  void take_metadata(const std::string& record) {
+  void take_metadata(std::uint64_t offset, const std::string& record) try {
     ByteCursor at{Bytes(record)};
     if (at.take_text() != kRecordedSettings) return;
     for (ByteCursor entries(at.take_counted()); entries.left() > 0;) {
       const std::string key(entries.take_text());
       settings_.emplace(key, entries.take_text());
     }
+  } catch (const MalformedError& e) {
+    fault(offset, std::string("a metadata record ") + e.what());
   }
 
-  /// Goes from record to record. False where the file is damaged or cut.
+  /// Goes from record to record, and behind damage from the next chunk on. False where the file is damaged or
+  /// cut.
   bool find_records(std::uint64_t offset) {
+    for (bool whole = true;; whole = false) {
+      std::uint64_t last = offset;
+      const std::string problem = walk(offset, last);
+      if (problem.empty()) {
+        use_summary(whole);
+        return whole;
+      }
+      // The length of the last record may be what is wrong.
+      const auto next = offset < file_bytes() ? next_chunk(last + 1) : std::nullopt;
+      fault(offset, problem + (knows_chunk_at(offset) ? "" : skipped_text(offset, next)));
+      if (!next) {
+        use_summary(whole);
+        return false;
+      }
+      offset = *next;
+    }
+  }
+
+  /// To the footer; else why it ends at `offset`. `last`: where the record before that begins.
+  std::string walk(std::uint64_t& offset, std::uint64_t& last) {
     std::optional<ChunkPlace> loose;
     const auto end_loose = [&] {
       if (loose) add_chunk(*loose);
@@ -135,8 +160,10 @@ class McapBag final : public ChunkedBag {
           end_loose();
           if (opcode == kChunk) find_chunk(offset, length, left);
           if (length > left)
-            throw MalformedError("the file ends within a record: " + std::to_string(length) +
-                                     " bytes are announced, " + std::to_string(left) + " are left",
+            throw MalformedError(length > kMaxChunkBytes
+                                     ? "no record begins here"
+                                     : "the file ends within a record: " + std::to_string(length) +
+                                           " bytes are announced, " + std::to_string(left) + " are left",
                                  0);
           if (opcode == kSchema || opcode == kChannel) {
             if (length > kMaxDescription) throw MalformedError("a description of more than 16 MiB", 0);
@@ -145,23 +172,56 @@ class McapBag final : public ChunkedBag {
             if (opcode == kChannel) ++channels_outside_;
           }
           if (opcode == kMetadata && length <= kMaxDescription)
-            take_metadata(read_at(offset + kHead, length));
+            take_metadata(offset, read_at(offset + kHead, length));
           if (opcode == kChunk) channels_outside_ = 0;  // only those after the last chunk are a summary
           if (opcode == kFooter) {
             has_summary_ = channels_outside_ > 0;
-            use_summary();
-            return true;
+            return "";
           }
         }
+        last = offset;
         offset += kHead + length;
       }
       end_loose();
-      fault(file_bytes(), "the file ends without a footer: it was not closed, or is cut");
+      return "the file ends without a footer: it was not closed, or is cut";
     } catch (const MalformedError& e) {
       end_loose();
-      fault(offset, e.what());
-      use_summary();
+      return e.what();
     }
+  }
+
+  /// The first byte from `from` on where a chunk begins whose lengths agree.
+  std::optional<std::uint64_t> next_chunk(std::uint64_t from) {
+    constexpr std::uint64_t kWindow = 1u << 20;
+    while (from + kChunkHead < file_bytes()) {
+      const std::string window = read_at(from, kWindow + kChunkHead + kMaxName);
+      const std::uint64_t candidates = std::min<std::uint64_t>(window.size(), kWindow);
+      for (std::size_t at = window.find(static_cast<char>(kChunk)); at < candidates;
+           at = window.find(static_cast<char>(kChunk), at + 1))
+        if (begins_chunk(Bytes(window).subspan(at), file_bytes() - from - at)) return from + at;
+      from += kWindow;
+    }
+    return std::nullopt;
+  }
+
+  /// Whether these bytes, of so many that are left in the file, begin with an intact chunk's head.
+  static bool begins_chunk(Bytes bytes, std::uint64_t left) try {
+    ByteCursor at(bytes);
+    if (at.take<std::uint8_t>() != kChunk) return false;
+    const auto length = at.take<std::uint64_t>();
+    const auto start = at.take<std::uint64_t>(), end = at.take<std::uint64_t>();
+    const auto contents = at.take<std::uint64_t>();
+    at.take<std::uint32_t>();  // check sum
+    const auto name_bytes = at.take<std::uint32_t>();
+    if (length > left - kHead || start > end || end > kMaxMcapTime || contents > kMaxChunkBytes ||
+        name_bytes > kMaxName)
+      return false;
+    const Bytes name = at.take_bytes(name_bytes);
+    const auto size = at.take<std::uint64_t>();
+    const std::string_view compression = text_of(name);
+    return length == kChunkHead - kHead + name_bytes + size &&
+           (compression == "zstd" || compression == "lz4" || (compression.empty() && size == contents));
+  } catch (const MalformedError&) {
     return false;
   }
 
@@ -198,8 +258,9 @@ class McapBag final : public ChunkedBag {
   }
 
   /// Chunks that only the summary at the end of the file tells of: a record before them has
-  /// a wrong length.
-  void use_summary() try {
+  /// a wrong length. Behind a piece that is missing its offsets are wrong: of a file that is not whole, that is
+  /// no further fault.
+  void use_summary(bool whole) try {
     const std::uint64_t tail = kFooterBytes + kMcapMagic.size();
     if (file_bytes() < tail || read_at(file_bytes() - kMcapMagic.size(), 8) != kMcapMagic) return;
     const std::string footer = read_at(file_bytes() - tail, kFooterBytes);
@@ -223,7 +284,7 @@ class McapBag final : public ChunkedBag {
         find_chunk(offset, length - kHead, length - kHead);
     }
   } catch (const MalformedError& e) {
-    fault(file_bytes() - kFooterBytes, std::string("the summary: ") + e.what());
+    if (whole) fault(file_bytes() - kFooterBytes, std::string("the summary: ") + e.what());
   }
 
   std::map<std::uint16_t, Schema> schemas_;

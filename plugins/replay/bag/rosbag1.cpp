@@ -17,6 +17,7 @@ enum RosbagOpcode : std::uint8_t {
 constexpr std::string_view kRosbagMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kMaxHeaderBytes = 1u << 20, kMaxConnectionBytes = 16u << 20;
 constexpr std::uint64_t kChunkHeadBytes = 4096;  // of a chunk's header, with room to spare
+constexpr std::size_t kMostChunkHeader = 200, kBeforeOp = 80;
 constexpr std::uint64_t kLooseRunBytes = 4u << 20;
 
 /// The named fields of a record's header.
@@ -92,8 +93,35 @@ class Rosbag1 final : public ChunkedBag {
     connect(record.number<std::uint32_t>("conn"), std::move(c));
   }
 
-  /// Goes from record to record. False where the file is damaged or cut, or has no index.
+  /// Goes from record to record, and behind damage from the next chunk on. False where the file is damaged or
+  /// cut, or has no index.
   bool find_records(std::uint64_t offset) {
+    std::uint64_t index = 0;  // where the header says that it begins
+    for (bool whole = true;; whole = false) {
+      std::uint64_t last = offset, last_chunk = 0;
+      const std::string problem = walk(offset, last, last_chunk, index);
+      if (problem.empty()) {
+        if (whole && index != 0 && index < file_bytes()) {
+          use_index(index, whole);
+          return true;
+        }
+        if (whole) fault(file_bytes(), "the bag has no index: it was not closed, or is cut");
+        return false;
+      }
+      // The length of the last record may be what is wrong.
+      const auto next = next_chunk(last + 1);
+      fault(offset, problem + (next || !ends_cut_ ? skipped_text(offset, next) : ""));
+      if (!next) {
+        if (index > last_chunk && index < file_bytes()) use_index(index, false);
+        return false;
+      }
+      offset = *next;
+    }
+  }
+
+  /// To the end of the file; else why it ends at `offset`. `last`: where the record before that begins.
+  std::string walk(std::uint64_t& offset, std::uint64_t& last, std::uint64_t& last_chunk,
+                   std::uint64_t& index) {
     std::optional<ChunkPlace> loose, chunk;
     const auto end_chunk = [&] {
       for (auto* place : {&loose, &chunk})
@@ -101,12 +129,12 @@ class Rosbag1 final : public ChunkedBag {
       loose.reset();
       chunk.reset();
     };
-    std::uint64_t index = 0, last_chunk = 0;
+    ends_cut_ = false;
     try {
       while (offset < file_bytes()) {
         const std::string lengths = read_at(offset, 4);
         const auto header_bytes = ByteCursor{Bytes(lengths)}.take<std::uint32_t>();
-        if (header_bytes > kMaxHeaderBytes) throw MalformedError("a header of more than 1 MiB", 0);
+        if (header_bytes > kMaxHeaderBytes) throw MalformedError("no record begins here", 0);
         const std::string header = read_at(offset + 4, std::uint64_t{header_bytes} + 4);
         ByteCursor at{Bytes(header)};
         const HeaderFields fields(at.take_bytes(header_bytes));
@@ -135,28 +163,55 @@ class Rosbag1 final : public ChunkedBag {
           const std::string data = read_at(begin, size);
           take_connection(fields, Bytes(data));
         }
-        if (size > left)
+        if (size > left) {
+          ends_cut_ = chunk.has_value() || loose.has_value();
           throw MalformedError("the file ends within a record: " + std::to_string(size) +
                                    " bytes are announced, " + std::to_string(left) + " are left",
                                0);
+        }
+        last = offset;
         offset = begin + size;
       }
       end_chunk();
-      if (index != 0 && index < file_bytes()) {
-        use_index(index);
-        return true;
-      }
-      fault(file_bytes(), "the bag has no index: it was not closed, or is cut");
+      return "";
     } catch (const MalformedError& e) {
       if (chunk && chunk->size == 0 && offset == chunk->offset) {
         // A chunk that was being written: its length is not known yet.
         chunk->size = file_bytes() - offset;
         chunk->cut = "it was not closed";
+        ends_cut_ = true;
       }
       end_chunk();
-      fault(offset, e.what());
-      if (index > last_chunk && index < file_bytes()) use_index(index);
+      return e.what();
     }
+  }
+
+  /// The first byte from `from` on where a chunk's record begins.
+  std::optional<std::uint64_t> next_chunk(std::uint64_t from) {
+    constexpr std::uint64_t kWindow = 1u << 20;
+    constexpr std::string_view kOp("\4\0\0\0op=\5", 8);  // a field of its header, the first or a later one
+    for (; from < file_bytes(); from += kWindow) {
+      const std::string window = read_at(from, kWindow + kChunkHeadBytes);
+      for (std::size_t op = window.find(kOp); op != std::string::npos; op = window.find(kOp, op + 1)) {
+        const std::size_t first = op < kBeforeOp ? 0 : op - kBeforeOp;
+        for (std::size_t at = first; at + 4 <= op; ++at)
+          if (begins_chunk(Bytes(window).subspan(at), file_bytes() - from - at)) return from + at;
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Whether these bytes, of so many that are left in the file, begin with an intact chunk's header.
+  static bool begins_chunk(Bytes bytes, std::uint64_t left) try {
+    ByteCursor at(bytes);
+    const auto header_bytes = at.take<std::uint32_t>();
+    if (header_bytes > kMostChunkHeader) return false;
+    const HeaderFields fields(at.take_bytes(header_bytes));
+    if (fields.number<std::uint8_t>("op") != kChunkData || !fields.has("size")) return false;
+    const auto compression = core::parse<Compression>(fields.text("compression"));
+    const auto size = at.take<std::uint32_t>();
+    return compression && size > 0 && at.at() + size <= left;
+  } catch (const MalformedError&) {
     return false;
   }
 
@@ -186,8 +241,9 @@ class Rosbag1 final : public ChunkedBag {
   }
 
   /// Chunks that only the index at the end of the file tells of: a record before them has a
-  /// wrong length.
-  void use_index(std::uint64_t index) try {
+  /// wrong length. Behind a piece that is missing its offsets are wrong: of a file that is not whole, that is no
+  /// further fault.
+  void use_index(std::uint64_t index, bool whole) try {
     if (file_bytes() - index > kMaxChunkBytes) return;
     const std::string records = read_at(index, file_bytes() - index);
     for (ByteCursor at{Bytes(records)}; at.left() > 0;) {
@@ -204,7 +260,7 @@ class Rosbag1 final : public ChunkedBag {
       }
     }
   } catch (const MalformedError& e) {
-    fault(index, std::string("the index: ") + e.what());
+    if (whole) fault(index, std::string("the index: ") + e.what());
   }
 
   /// nullopt if the index is wrong, and no chunk begins there.
@@ -219,6 +275,8 @@ class Rosbag1 final : public ChunkedBag {
   } catch (const MalformedError&) {
     return std::nullopt;
   }
+
+  bool ends_cut_ = false;  // within a chunk, whose beginning is read
 };
 
 }  // namespace

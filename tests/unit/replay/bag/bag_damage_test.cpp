@@ -134,6 +134,63 @@ TEST(BagDamage, ChunksInsideTheLengthThatAnotherAnnouncesAreRead) {
   }
 }
 
+/// A piece from within the third chunk to within the fourth is missing, not as long as a chunk: all offsets
+/// behind it are wrong.
+std::string with_hole(const Files& f) {
+  std::vector<std::size_t> begins;
+  if (f.name.ends_with(".bag")) {
+    for (std::size_t at = f.bytes.find("compression="); at != std::string::npos;
+         at = f.bytes.find("compression=", at + 1))
+      begins.push_back(at);
+  } else {
+    for (std::size_t at = 8; at + 9 < f.bytes.size(); at += 9 + number_at<std::uint64_t>(f.bytes, at + 1))
+      if (f.bytes[at] == 6) begins.push_back(at);
+  }
+  const std::size_t from = (begins.at(2) + begins.at(3)) / 2, to = (begins.at(3) + begins.at(4)) / 2 + 37;
+  return f.bytes.substr(0, from) + f.bytes.substr(to);
+}
+
+TEST(BagDamage, BehindAPieceThatIsMissingTheNextChunksAreRead) {
+  Folder dir;
+  for (const Files& f : small_bags(dir)) {
+    if (f.name >= "g.mcap") continue;  // without chunks
+    const std::string bytes = with_hole(f), path = dir.write(f.name, bytes);
+    const int count = read_all(path);  // of 100 in chunks of 15, two chunks are damaged
+    EXPECT_GE(count, 70) << f.name;
+    EXPECT_LT(count, 100) << f.name;
+    const auto bag = open_bag(path);
+    core::TimeNs before = 0, last = 0;
+    while (const auto m = bag->next()) {
+      EXPECT_GE(m->time, before) << f.name;
+      before = last = m->time;
+    }
+    const auto whole = open_bag(dir.write("whole_" + f.name, f.bytes));
+    while (const auto m = whole->next()) before = m->time;
+    EXPECT_EQ(last, before) << f.name << ": the last message is read";
+    std::string faults;
+    for (const Fault& fault : bag->faults().first()) faults += fault.place + ": " + fault.reason + "\n";
+    EXPECT_NE(faults.find("reading goes on with the chunk at byte "), std::string::npos) << f.name << faults;
+    EXPECT_EQ(faults.find("summary"), std::string::npos) << f.name << faults;
+  }
+}
+
+TEST(BagDamage, OfWhatNoChunkFollowsTheBytesAreCounted) {
+  Folder dir;
+  const Files f = small_bags(dir).at(4);
+  std::string bytes = f.bytes.substr(0, f.bytes.size() * 2 / 3);
+  int chunk = 0;
+  std::size_t begin = 0;
+  for (std::size_t at = 8; at + 9 < bytes.size(); at += 9 + number_at<std::uint64_t>(bytes, at + 1))
+    if (bytes[at] == 6 && ++chunk == 3) begin = at;
+  for (std::size_t i = begin; i < bytes.size(); ++i) bytes[i] = '\x77';
+  const auto bag = open_bag(dir.write("end.mcap", bytes));
+  ASSERT_GT(bag->faults().count(), 0u);
+  EXPECT_EQ(bag->faults().first().front().place, "byte " + std::to_string(begin));
+  EXPECT_EQ(bag->faults().first().front().reason,
+            "no record begins here; the " + std::to_string(bytes.size() - begin) +
+                " bytes from there on are not read");
+}
+
 /// The second chunk says that it holds 10 bytes, decompressed.
 std::string with_small_chunk(const Files& f) {
   std::string bytes = f.bytes;
@@ -166,7 +223,30 @@ TEST(BagDamage, OfADatabaseThatIsCutTheBeginningIsRead) {
   EXPECT_LT(count, 100);
   const auto bag = open_bag(path);
   while (bag->next()) continue;
-  EXPECT_GT(bag->faults().count(), 0u);
+  ASSERT_GT(bag->faults().count(), 0u);
+  const std::size_t cut = bytes.size() / 2 / 4096 * 4096;
+  EXPECT_EQ(bag->faults().first().front().place, "byte " + std::to_string(cut));
+  EXPECT_NE(bag->faults().first().front().reason.find("its header says " + std::to_string(bytes.size())),
+            std::string::npos)
+      << bag->faults().first().front().reason;
+}
+
+/// SQLite finds nothing where the pages that lead to the messages are missing.
+TEST(BagDamage, OfADatabaseWithoutItsMessagesTheErrorSaysThatItIsDamaged) {
+  Folder dir;
+  const std::string bytes = small_bags(dir).back().bytes;
+  std::string cut = bytes.substr(0, bytes.size() / 2 / 4096 * 4096);
+  for (std::size_t page = 4096; page < cut.size(); page += 4096)
+    if (cut[page] == 5) cut[page] = 0;  // an inner page of a table
+  try {
+    open_bag_recording(dir.write("cut.db3", cut), "");
+    ADD_FAILURE() << "a scan was found";
+  } catch (const core::InputError& e) {
+    const std::string text = e.what();
+    for (const char* part : {"cut.db3: No topic has scans", "The bag is damaged: byte ", "its header says ",
+                             "database disk image is malformed"})
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
 }
 
 // The first read beyond the record, the second never ended: its pages lead in a circle.
