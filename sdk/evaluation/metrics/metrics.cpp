@@ -14,6 +14,7 @@
 #include "sdk/evaluation/metrics/earlier_map.h"
 #include "sdk/evaluation/metrics/flight_figures.h"
 #include "sdk/evaluation/metrics/object_figures.h"
+#include "sdk/evaluation/metrics/replay_figures.h"
 #include "sdk/evaluation/metrics/unsurveyed.h"
 #include "sdk/evaluation/record/whole_file.h"
 
@@ -226,6 +227,13 @@ ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Tru
     m["earlier_map_found"] = earlier->found ? 1 : 0;
     m["earlier_volume_m3"] = value(earlier->earlier_m3);
     m["added_volume_m3"] = value(added_m3(volume.explored_m3, earlier->earlier_m3));
+  }
+  if (const auto replayed = replay_figures(run)) {
+    m["recording"] = replayed->recording;
+    m["scans"] = replayed->scans;
+    m["scans_lost"] = replayed->lost;
+    m["loops_closed"] = replayed->closures;
+    m["loop_correction_m"] = value(replayed->correction_m);
   }
   m["volume_per_wh_m3"] = value(volume.explored_m3 && f.energy_wh && *f.energy_wh > 0
                                     ? std::optional(*volume.explored_m3 / *f.energy_wh)

@@ -34,9 +34,24 @@ std::string who(const ordered_json& metrics, const Ending& ending) {
   return policy + (ending.failed_policy ? ", and after it failed the fallback," : "");
 }
 
+std::string of_replay(const std::string& recording, const ordered_json& metrics) {
+  std::string text = recording + part(": %.0f scans", number_of(metrics, "scans"));
+  if (const auto lost = number_of(metrics, "scans_lost"); lost && *lost > 0)
+    text += part(", %.0f of them lost,", lost);
+  text += part(" in %.0f s", number_of(metrics, "flight_time_s"));
+  text += part(" along %.1f m", number_of(metrics, "path_length_m"));
+  text += part(", %.0f m³ of free volume", number_of(metrics, "explored_volume_m3"));
+  const auto closed = number_of(metrics, "loops_closed");
+  if (!closed || *closed == 0) return text + ", no loop closed";
+  return text + part(*closed == 1 ? ", %.0f loop closed" : ", %.0f loops closed", closed) +
+         part(", positions corrected by up to %.2f m", number_of(metrics, "loop_correction_m"));
+}
+
 }  // namespace
 
 std::string achievement_of(const ordered_json& metrics, const Ending& ending) {
+  if (const std::string recording = text_of(metrics, "recording"); !recording.empty())
+    return of_replay(recording, metrics);
   const std::string cave = text_of(metrics, "cave");
   const auto volume_m3 = number_of(metrics, "explored_volume_m3"), coverage = number_of(metrics, "coverage");
   auto time_s = number_of(metrics, "flight_time_s");

@@ -1,5 +1,7 @@
 // The run's data, and small functions to read it.
 const data = JSON.parse(document.getElementById("data").textContent);
+/** A replay has a recording's scans, and no policy, goals or battery. */
+const isReplay = typeof data.metrics?.recording === "string";
 const element = (id) => document.getElementById(id);
 
 /** A typed array from base64 of little-endian numbers. */

@@ -33,13 +33,15 @@ function makeDrawings(drawings) {
   return { group, labels };
 }
 
-/** The edges of the region's bodies, as pairs of points one after another. */
+/** The edges of the region's bodies, as pairs of points one after another; the sides of those to keep out of are
+ *  crossed. */
 function regionEdges(bodies) {
   const points = [];
-  for (const { outline, low, high } of bodies)
+  for (const { keep, outline, low, high } of bodies)
     outline.forEach((a, i) => {
       const b = outline[(i + 1) % outline.length];
       points.push(...a, low, ...b, low, ...a, high, ...b, high, ...a, low, ...a, high);
+      if (keep === "out") points.push(...a, low, ...b, high, ...a, high, ...b, low);
     });
   return points;
 }
@@ -67,7 +69,7 @@ function makeFlight(run) {
   }
   let trueLine = null;
   if (truth && truth.count > 1) trueLine = addLine("true path", thickLine(truth.xyz, 1.5, colours.truth), 3);
-  if (odometry && odometry.count > 1) addLine("path before loops", thickLine(odometry.xyz, 1.5, colours.odometry), 3);
+  if (odometry && odometry.count > 1) addLine("path before loops", thickLine(odometry.xyz, 7, colours.odometry), 1);  // a border where both are one
   if (run.loops) {
     const mark = (name, colour, closures) => {
       if (closures.length) setMarks(add(name, roundMarks(colour), 6), [].concat(...closures.map((c) => c[1])), closures.map(() => 10));
@@ -75,10 +77,12 @@ function makeFlight(run) {
     mark("loops closed", colours.loop, run.loops.filter((c) => c[2]));
     mark("closures not used", colours.object, run.loops.filter((c) => !c[2]));
   }
-  if (run.region) {
+  for (const [name, keep, colour] of [["keep in", "in", colours.keepIn], ["keep out", "out", colours.keepOut]]) {
+    const bodies = (run.region || []).filter((b) => b.keep === keep);
+    if (!bodies.length) continue;
     const edges = new THREE.BufferGeometry();
-    edges.setAttribute("position", new THREE.Float32BufferAttribute(regionEdges(run.region), 3));
-    add("region", new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: colours.region })), 1);
+    edges.setAttribute("position", new THREE.Float32BufferAttribute(regionEdges(bodies), 3));
+    add(name, new THREE.LineSegments(edges, new THREE.LineBasicMaterial({ color: colour })), 1);
   }
   const frontiers = add("frontiers", roundMarks(colours.frontier), 5);
   const objects = add("objects", roundMarks(colours.object), 6);
@@ -91,7 +95,7 @@ function makeFlight(run) {
   let shownPlan, shownFrontiers, shownObjects, shownDrawings, drawingLabels = [], clusterPlaces = [], resolution = [1, 1];
   const used = { plan: run.plans.length, goal: run.goals.length, frontiers: run.frontiers.length, objects: run.objects.length,
                  drawings: run.drawings.some((d) => d[1].length) };
-  const choices = ["path", "path before loops", "loops closed", "closures not used", "true path", "region", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
+  const choices = ["path", "path before loops", "loops closed", "closures not used", "true path", "keep in", "keep out", "plan", "goal", "frontiers", "objects", "drawings"].filter((n) => layer[n] && (used[n] ?? true));
   const view = { object, layer, choices, labels: [], avoid: [], scores: null, vehicles: [vehicle], track, now: { position: new THREE.Vector3(), heading: 0 } };
   const withResolution = (line) => { line.material.resolution.set(...resolution); return line; };
 

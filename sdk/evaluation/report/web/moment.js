@@ -81,9 +81,9 @@ function startMomentPanel() {
       make("div", { className: "phase" }, down ? "done, on the ground" : phase || "no phase yet"),
       rows([["speed", down ? null : withUnit(curveAt(c.speed, t), "m/s", 2)],
             ["explored", withUnit(curveAt(c.volume, t), "m³", 4)],
-            ["battery", withUnit(curveAt(c.battery, t), "%", 2)],
-            ["clearance", down ? null : withUnit(curveAt(c.clearance, t), "m", 2)], ["from the start", withUnit(curveAt(c.distance, t), "m", 3)]]),
-      make("h3", {}, "Goal"), ...goalPanel(t),
-      make("h3", {}, "Last decision"), ...decisionPanel(t));
+            ...isReplay ? [] : [["battery", withUnit(curveAt(c.battery, t), "%", 2)],
+                                ["clearance", down ? null : withUnit(curveAt(c.clearance, t), "m", 2)]],
+            ["from the start", withUnit(curveAt(c.distance, t), "m", 3)]]),
+      ...isReplay ? [] : [make("h3", {}, "Goal"), ...goalPanel(t), make("h3", {}, "Last decision"), ...decisionPanel(t)]);
   });
 }

@@ -55,7 +55,8 @@ function outcomeBadge(outcome) {
 function showTitle(more = []) {
   const m = data.metrics;
   const seed = typeof m.seed === "number" ? "seed " + m.seed : "";
-  const title = [m.policy || "unknown policy", m.cave || "unknown cave", seed, ...more].filter(Boolean);
+  const title = isReplay ? [m.recording, "replay"]
+    : [m.policy || "unknown policy", m.cave || "unknown cave", seed, ...more].filter(Boolean);
   element("title").textContent = title.join(" · ");
   document.title = "karst: " + title.join(", ");
   const [text, look] = outcomeBadge(m.outcome);
@@ -84,9 +85,25 @@ function showProblems() {
   for (const p of data.problems) box.querySelector("ul").append(make("li", {}, p));
 }
 
+/** What there is to say of a recording, and whether loops were closed in it. */
+function replayFigures(m) {
+  const count = (v) => typeof v === "number" ? [String(v), ""] : null;
+  return [
+    [m.scans_lost ? `scans (${m.scans_lost} lost)` : "scans", count(m.scans)],
+    ["duration", typeof m.flight_time_s === "number" ? durationParts(m.flight_time_s) : null],
+    ["path length", figure(m.path_length_m, "m")], ["mean speed", figure(m.mean_speed_mps, "m/s")],
+    ["free volume", figure(m.explored_volume_m3, "m³", 4)], ["loops closed", count(m.loops_closed)],
+    ...m.loops_closed ? [["greatest correction", typeof m.loop_correction_m === "number" ? [m.loop_correction_m.toFixed(2), "m"] : null]] : [],
+  ];
+}
+
 function showHeader() {
   const m = data.metrics;
   showTitle();
+  if (isReplay) {
+    showFigures(replayFigures(m));
+    return showProblems();
+  }
   const refused = typeof m.goals_rejected === "number" ? `(${m.goals_rejected})` : "";
   showFigures([
     ["flight time", typeof m.flight_time_s === "number" ? durationParts(m.flight_time_s) : null],

@@ -18,7 +18,7 @@ function showScale(cloud, step, mode) {
 
 const layerMarks = {
   "map": ["", ""], "path": [colours.explore, ""], "true path": [colours.truth, ""],
-  "path before loops": [colours.odometry, ""], "loops closed": [colours.loop, "dot"], "closures not used": [colours.object, "dot"], "region": [colours.region, ""], "plan": [colours.plan, ""],
+  "path before loops": [colours.odometry, ""], "loops closed": [colours.loop, "dot"], "closures not used": [colours.object, "dot"], "keep in": [colours.keepIn, ""], "keep out": [colours.keepOut, "cross"], "plan": [colours.plan, ""],
   "goal": [colours.goal, "ring"], "frontiers": [colours.frontier, "dot"], "drawings": ["", ""], "grid": ["", ""],
   "paths": ["", ""], "links": ["#009e73", ""], "relays": [colours.goal, "ring"], "reach": [colours.home, "dot"],
   "homing tree": [colours.truth, ""], "objects": [colours.object, "dot"], "objects known at the base": [colours.home, "dot"],
@@ -36,8 +36,9 @@ function connectLayers(objects, redraw) {
       mark.style.background = mark.style.borderColor = colour;
       label.append(mark);
     }
-    label.append(name === "path" ? "out" : name);
-    if (name === "path") {
+    const outAndHome = name === "path" && !isReplay;
+    label.append(outAndHome ? "out" : name === "path" && data.odometry_track ? "path, corrected" : name);
+    if (outAndHome) {
       const home = make("i");
       home.style.background = colours.home;
       home.style.marginLeft = "10px";

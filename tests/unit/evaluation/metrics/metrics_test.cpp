@@ -325,6 +325,28 @@ TEST(Metrics, TimesOfCoverageAreCountedFromTakeOffAndNullIfNeverReached) {
   EXPECT_TRUE(m["t95_s"].is_null());
 }
 
+TEST(Metrics, OfAReplayTellItsScansAndByHowFarLoopsCorrectedThem) {
+  TemporaryDirectory dir;
+  dir.write("trajectory.tum", "100 0 0 0 0 0 0 1\n101 1 0 0 0 0 0 1\n102 2 0.3 0.4 0 0 0 1\n");
+  dir.write("telemetry.csv", "t_s,explored_m3\n0,1\n1,2\n2,3\n3,3\n");
+  EXPECT_FALSE(figures(dir).contains("recording"));
+  dir.write("mission.info", "replay { scans \"/data/flight 7.bag\" }\n");
+  const ordered_json open = figures(dir);
+  EXPECT_EQ(open["recording"], "flight 7.bag");
+  EXPECT_EQ(open["scans"], 4);
+  EXPECT_EQ(open["scans_lost"], 1);
+  EXPECT_EQ(open["loops_closed"], 0);
+  EXPECT_TRUE(open["loop_correction_m"].is_null());
+
+  dir.write("trajectory_odometry.tum", "100 0 0 0 0 0 0 1\n101 1 0.1 0 0 0 0 1\n102 2 0 0 0 0 0 1\n");
+  dir.write("loops.csv", "older_s,newer_s,state\n1,2,closed\n1,3,alone\n2,3,closed\n");
+  dir.write("mission.info", "replay { scans /data/scans/ }\n");
+  const ordered_json closed = figures(dir);
+  EXPECT_EQ(closed["recording"], "scans");
+  EXPECT_EQ(closed["loops_closed"], 2);
+  EXPECT_NEAR(closed["loop_correction_m"].get<double>(), 0.5, 1e-9);
+}
+
 TEST(Metrics, OfWhatASurveyLacksAreThereIfTheMissionHasOne) {
   TemporaryDirectory dir;
   dir.write("events.jsonl", std::string(kPhases) + kLanded);  // take-off at 10 s

@@ -34,6 +34,24 @@ TEST(Summary, LeavesOutWhatIsNotKnown) {
       << "damaged figures are not known";
 }
 
+TEST(Summary, OfAReplayTellsOfTheRecording) {
+  ordered_json m = {{"policy", nullptr},      {"recording", "a.bag"},      {"scans", 384},
+                    {"scans_lost", 0},        {"flight_time_s", 38.5},     {"path_length_m", 45.63},
+                    {"loops_closed", 0},      {"loop_correction_m", nullptr},
+                    {"explored_volume_m3", 539.1}};
+  EXPECT_EQ(summary_of(m, {.sentence = "replayed: the recording ended"}),
+            "a.bag: 384 scans in 38 s along 45.6 m, 539 m³ of free volume, no loop closed; replayed: the "
+            "recording ended");
+  m["scans_lost"] = 3;
+  m["loops_closed"] = 1;
+  EXPECT_EQ(achievement_of(m, {}),
+            "a.bag: 384 scans, 3 of them lost, in 38 s along 45.6 m, 539 m³ of free volume, 1 loop closed");
+  m["loops_closed"] = 5;
+  m["loop_correction_m"] = 1.204;
+  EXPECT_NE(achievement_of(m, {}).find("5 loops closed, positions corrected by up to 1.20 m"),
+            std::string::npos);
+}
+
 TEST(Summary, WithASurveySaysWhatLiesBeyondIt) {
   ordered_json m = metrics();
   m["unsurveyed_volume_m3"] = 211.4;

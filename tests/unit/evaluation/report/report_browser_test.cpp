@@ -318,6 +318,26 @@ TEST(ReportInBrowser, CutsNoLabelAndBreaksNoWordOfAHeadOnADesktop) {
   EXPECT_EQ(test::cut_on_desktop(dir.path() / "report.html"), "");
 }
 
+TEST(ReportInBrowser, OfAReplaySaysWhatWasReplayedAndShowsBothPaths) {
+  TemporaryDirectory dir;
+  write_small_run(dir.path());
+  fs::remove(dir.path() / "events.jsonl");
+  fs::copy_file(dir.path() / "trajectory.tum", dir.path() / "trajectory_odometry.tum");
+  std::ofstream(dir.path() / "loops.csv")
+      << "older_s,newer_s,state,older_x,older_y,older_z,newer_x,newer_y,newer_z\n1,40,closed,1,2,3,1.5,2,3\n";
+  std::ofstream(dir.path() / "mission.info") << "replay { scans /data/cave.bag }\n";
+  std::ofstream(dir.path() / "events.jsonl")
+      << R"({"t": 0, "kind": "phase", "phase": "replay", "reason": "900 scans"})" << "\n"
+      << R"({"t": 30, "kind": "outcome", "outcome": "replayed", "reason": "the recording ended"})" << "\n";
+  write_report(dir.path());
+  const std::string body = show_page(dir.path() / "report.html").body;
+  for (const char* there : {">cave.bag · replay<", "✓ replayed", "path, corrected", "path before loops",
+                            "<b>1</b><span>loops closed</span>", "greatest correction"})
+    EXPECT_NE(body.find(there), std::string::npos) << there;
+  for (const char* none : {"unknown policy", "goals (refused)", "Last decision", "Battery left", "</i>out"})
+    EXPECT_EQ(body.find(none), std::string::npos) << none;
+}
+
 TEST(ReportInBrowser, OfATeamFitsAPhoneAndHasANorthArrow) {
   TemporaryDirectory dir;
   for (const char* robot : {"robot_1", "robot_2"}) write_small_run(dir.path() / robot);
