@@ -1,6 +1,7 @@
 #include "sdk/cave_drawing/draw_frame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -15,6 +16,8 @@ namespace {
 
 constexpr double kWall_mm = 0.45, kThinWall_mm = 0.2, kUncertain_mm = 0.2, kHidden_mm = 0.25, kLeg_mm = 0.2,
                  kPath_mm = 0.13, kGrid_mm = 0.1;
+constexpr double kBorder_mm = 0.3, kHatch_mm = 4;
+constexpr const char *kKeepIn = "#00875a", *kKeepOut = "#c92a2a";
 constexpr double kSmallScale = 2500;  // beyond, walls are thinner, and stations have no room
 constexpr double kFine_mm = 0.05;     // lines are simplified by no more on paper
 constexpr double kName_mm = 2.4, kNumber_mm = 2.2;
@@ -127,14 +130,47 @@ std::string grid_lines(const Frame& frame, double step_m) {
   return out + "</g>\n";
 }
 
+/// Lines across the inside of a closed outline, in mm from the lower left to the upper right, within the frame.
+std::vector<std::array<Point, 2>> hatching(const Line& outline, const Frame& frame) {
+  // Lines of y - x = v; on each, the outline's edges are crossed where the inside begins or ends.
+  const Point corner(frame.left_mm, frame.top_mm);
+  std::vector<std::array<Point, 2>> lines;
+  for (double v = corner.y() - corner.x() - frame.width_mm;
+       v < corner.y() - corner.x() + frame.height_mm; v += kHatch_mm) {
+    std::vector<Point> crossings;
+    for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
+      const Point a = frame.at(outline[i]), b = frame.at(outline[i + 1]);
+      const double from = a.y() - a.x() - v, to = b.y() - b.x() - v;
+      if ((from < 0) != (to < 0)) crossings.push_back(a + (b - a) * (from / (from - to)));
+    }
+    std::sort(crossings.begin(), crossings.end(),
+              [](const Point& a, const Point& b) { return a.x() < b.x(); });
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
+      lines.push_back({crossings[i], crossings[i + 1]});
+  }
+  return lines;
+}
+
+std::string hatched(const std::vector<Line>& outlines, const Frame& frame) {
+  std::string d;
+  for (const Line& outline : outlines)
+    for (const auto& [a, b] : hatching(outline, frame))
+      d += "M" + mm(a.x()) + " " + mm(a.y()) + "L" + mm(b.x()) + " " + mm(b.y());
+  if (d.empty()) return "";
+  return "<path class=\"keep-out-hatching\" fill=\"none\"" + stroke(kKeepOut, kGrid_mm) + " d=\"" + d +
+         "\"/>\n";
+}
+
 /// A region may be much larger than the cave: its border is cut at the frame.
 std::string borders_of(const Drawing& drawing, const Frame& frame) {
-  if (drawing.borders.empty()) return "";
+  if (drawing.keep_in.empty() && drawing.keep_out.empty()) return "";
   const std::string name = std::string("frame-") + core::name_of(drawing.view);  // a page may have several
   return "<clipPath id=\"" + name + "\">" +
          box(frame.left_mm, frame.top_mm, frame.width_mm, frame.height_mm, "") +
          "</clipPath>\n<g clip-path=\"url(#" + name + ")\">\n" +
-         lines_of("borders", drawing.borders, frame, stroke("#000000", kLeg_mm, "3 0.8 0.6 0.8")) + "</g>\n";
+         hatched(drawing.keep_out, frame) +
+         lines_of("keep-out", drawing.keep_out, frame, stroke(kKeepOut, kBorder_mm)) +
+         lines_of("keep-in", drawing.keep_in, frame, stroke(kKeepIn, kBorder_mm, "3 0.8 0.6 0.8")) + "</g>\n";
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ struct Drawing {
   std::vector<Line> hidden_walls;     // of passages below others
   std::vector<Line> centreline;       // measured legs
   std::vector<Line> paths;            // flown
-  std::vector<Line> borders;          // of where the vehicle might fly, and of where not
+  std::vector<Line> keep_in;          // outlines of where the vehicle might fly
+  std::vector<Line> keep_out;         // and of where not
   std::vector<Line> splays;           // shots to the walls
   std::vector<Line> links;            // from a passage to where its side passage is drawn
   std::vector<Mark> marks;

@@ -78,7 +78,7 @@ Vec3 end_of(const core::VoxelMap& map, const PassageLines& lines, const PassageP
 /// The outline from above, and from the side the outermost of its corners between its heights. A height that
 /// the mission left open ends with the map.
 void draw_border(const core::Prism& prism, const FreeRuns& free, const Vec3& entrance, double bearing,
-                 CaveDrawings& out) {
+                 std::vector<Line> Drawing::*lines, CaveDrawings& out) {
   const double low_m = std::max(prism.low_m, free.low_z * free.cell_m),
                high_m = std::min(prism.high_m, (free.high_z + 1) * free.cell_m);
   Line from_above(prism.outline.begin(), prism.outline.end());
@@ -90,9 +90,9 @@ void draw_border(const core::Prism& prism, const FreeRuns& free, const Vec3& ent
     last = std::max(last, along);
   }
   const double low = low_m - entrance.z(), high = high_m - entrance.z();
-  out.plan.borders.push_back(std::move(from_above));
+  (out.plan.*lines).push_back(std::move(from_above));
   if (low < high)
-    out.projected.borders.push_back({{first, low}, {last, low}, {last, high}, {first, high}, {first, low}});
+    (out.projected.*lines).push_back({{first, low}, {last, low}, {last, high}, {first, high}, {first, low}});
 }
 
 double floor_m(const PassagePoint& p) { return p.middle.z() - 0.5 * p.height_m; }
@@ -151,8 +151,10 @@ CaveDrawings map_drawings(const core::VoxelMap& map, const FlightRecord& record,
   }
   if (record.region) {
     const core::FlightRegion::Limits& limits = record.region->limits();
-    if (limits.keep_in) draw_border(*limits.keep_in, free, entrance, bearing, out);
-    for (const core::Prism& prism : limits.keep_out) draw_border(prism, free, entrance, bearing, out);
+    if (limits.keep_in)
+      draw_border(*limits.keep_in, free, entrance, bearing, &Drawing::keep_in, out);
+    for (const core::Prism& prism : limits.keep_out)
+      draw_border(prism, free, entrance, bearing, &Drawing::keep_out, out);
   }
   out.facts = {record.name,  record.date,  record.from,         std::nullopt,
                std::nullopt, std::nullopt, map.free_volume_m3()};

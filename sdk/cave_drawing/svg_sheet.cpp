@@ -59,7 +59,8 @@ std::string legend_text(const Drawing& drawing, const CaveFacts& facts, const Fr
     legend +=
         facts.from == "survey" ? ", black dashes: walls not measured" : ", black dashes: limit of sight";
   if (!drawing.paths.empty()) legend += ", thin: flown path";
-  if (!drawing.borders.empty()) legend += ", dash-dotted: limits of the flight";
+  if (!drawing.keep_in.empty()) legend += ", green dash-dotted: keep in";
+  if (!drawing.keep_out.empty()) legend += ", red hatched: keep out";
   if (leads_on) legend += ", ?: leads on";
   if (joints) legend += ", same letters: same place";
   return cut_to(legend, 2.2, frame.width_mm);

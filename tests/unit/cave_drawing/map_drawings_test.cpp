@@ -55,16 +55,18 @@ TEST(MapDrawings, TheRegionOfTheFlightIsDrawnInPlanAndProfile) {
   record.region = std::make_shared<const core::FlightRegion>(limits);
   const double entrance_z = record.entrance->z(), entrance_x = record.entrance->x();
   const CaveDrawings drawings = map_drawings(tunnel(), record, std::numbers::pi / 2, "map");
-  ASSERT_EQ(drawings.plan.borders.size(), 2u);
-  EXPECT_EQ(drawings.plan.borders[1], (Line{{10, 0}, {12, 0}, {11, 2}, {10, 0}}));
-  ASSERT_EQ(drawings.projected.borders.size(), 2u);
-  const Line& aside = drawings.projected.borders[0];
+  ASSERT_EQ(drawings.plan.keep_in.size(), 1u);
+  EXPECT_EQ(drawings.plan.keep_out, (std::vector<Line>{{{10, 0}, {12, 0}, {11, 2}, {10, 0}}}));
+  ASSERT_EQ(drawings.projected.keep_in.size(), 1u);
+  EXPECT_EQ(drawings.projected.keep_out.size(), 1u);
+  const Line& aside = drawings.projected.keep_in[0];
   EXPECT_NEAR((aside[2] - Point(30 - entrance_x, 2.5 - entrance_z)).norm(), 0, 1e-9);
   EXPECT_NEAR((aside[0] - Point(5 - entrance_x, 0 - entrance_z)).norm(), 0, 0.41) << "it ends with the map";
   EXPECT_EQ(drawings.plan.walls, map_drawings(tunnel(), record_of(), {}, "map").plan.walls);
   const std::string page = svg_sheet(drawings.plan, drawings.facts, {}, "map");
-  EXPECT_NE(page.find("class=\"borders\""), std::string::npos);
-  EXPECT_NE(page.find("limits of the flight"), std::string::npos);
+  for (const char* part : {"class=\"keep-in\"", "class=\"keep-out\"", "class=\"keep-out-hatching\"",
+                           "green dash-dotted: keep in, red hatched: keep out"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
   EXPECT_EQ(
       svg_sheet(map_drawings(tunnel(), record_of(), {}, "map").plan, drawings.facts, {}, "map").find("clip"),
       std::string::npos);

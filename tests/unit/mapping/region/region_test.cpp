@@ -204,6 +204,15 @@ TEST(RegionKeys, NumbersMayHaveAPlusSign) {
     EXPECT_FALSE(refusal(keep_in(std::string("box 0 0 0 1 1 ") + none)).empty()) << none;
 }
 
+TEST(RegionKeys, APolygonMayRepeatItsFirstCorner) {
+  RegionKeys open, closed;
+  open.keep_in = "polygon -10 -10 10 -10 10 10 -10 10 from -5 to 5";
+  closed.keep_in = "polygon -10 -10 10 -10 10 10 -10 10 -10 -10 from -5 to 5";
+  EXPECT_EQ(region_of("m", closed)->limits().keep_in->outline, region_of("m", open)->limits().keep_in->outline);
+  closed.keep_in = "polygon 0 0 5 0 0 0";
+  EXPECT_THROW(region_of("m", closed), InputError);
+}
+
 TEST(RegionKeys, WithoutLimitsThereIsNoRegion) {
   EXPECT_FALSE(region_of("", RegionKeys{}));
   EXPECT_FALSE(region_in("", boost::property_tree::ptree()));
