@@ -13,13 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool holds_scans(const std::string& folder) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (entry.is_regular_file() && is_scan_file(entry.path().string())) return true;
-  return false;
-}
-
 bool is_bag_recording(const std::string& path) {
   if (!fs::exists(path)) throw core::InputError(path, "", "no such bag, and no such folder of scans");
   if (!fs::is_directory(path)) {
@@ -27,11 +20,18 @@ bool is_bag_recording(const std::string& path) {
     return true;
   }
   if (!is_folder_of_bags(path)) return false;
-  if (holds_scans(path)) throw core::InputError(path, "", "holds scans and bags: name the bag");
+  if (holds_scan_files(path)) throw core::InputError(path, "", "holds scans and bags: name the bag");
   return true;
 }
 
 }  // namespace
+
+bool holds_scan_files(const std::string& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error))
+    if (entry.is_regular_file() && is_scan_file(entry.path().string())) return true;
+  return false;
+}
 
 RecordingSource open_source(const std::string& path, const std::string& info_file) {
   RecordingSource source;

@@ -15,6 +15,9 @@ struct RecordingSource {
   std::unique_ptr<SensorStream> sensors;
 };
 
+/// True for a folder with point clouds in it.
+bool holds_scan_files(const std::string& folder);
+
 /// `info_file` as for open_recording and open_bag_recording. Reads the first scan, so that an error common to
 /// all of them is thrown now. Throws InputError.
 RecordingSource open_source(const std::string& path, const std::string& info_file);

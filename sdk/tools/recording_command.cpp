@@ -7,6 +7,7 @@
 #include "core_stack/common/error.h"
 #include "core_stack/common/install_location.h"
 #include "plugins/replay/recording_guess.h"
+#include "plugins/replay/recording_source.h"
 #include "plugins/replay/scan_files/decimal_time.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/arguments.h"
@@ -65,6 +66,10 @@ void print_survey(const replay::BagSurvey& survey, const replay::RecordingGuess&
 }
 
 int show_recording(const RecordingArguments& args) {
+  if (replay::holds_scan_files(args.file) && !replay::is_folder_of_bags(args.file))
+    throw core::InputError(args.file, "",
+                           "is a folder of scans, not a bag: karst replay reads it, and takes what the scans do "
+                           "not say from recording.info in it");
   const replay::BagSurvey survey = replay::survey_bag(args.file, replay::SurveyExtent::all);
   const replay::RecordingGuess guess = replay::guess_recording(survey);
   if (args.json)

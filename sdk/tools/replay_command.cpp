@@ -32,16 +32,23 @@ struct ReplayArguments {
   bool json = false, quiet = false, no_report = false, keys = false;
 };
 
-/// One line that is rewritten on a terminal, otherwise one line every hundred scans.
+/// One line that is rewritten on a terminal, otherwise one line every hundred scans. If loops were closed, the
+/// scans come a second time.
 class ReplayLine {
  public:
   ReplayLine(bool quiet, std::optional<std::size_t> scans) : quiet_(quiet), scans_(scans) {}
-  void show(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) const {
-    if (quiet_ || (!terminal_ && scan % 100 != 0)) return;
+  void show(std::size_t scan, const core::LoamPose& pose, const core::VoxelMap& map) {
+    if (quiet_) return;
+    if (scan <= last_) begin_again();
+    last_ = scan;
+    if (!terminal_ && scan % 100 != 0) return;
     const core::Vec3& p = pose.T_world_body.position;
-    std::fprintf(stderr, "%sscan %zu%s  at (%.1f, %.1f, %.1f)  %d features  %.0f m³ free  %s%s",
-                 terminal_ ? "\r\033[K" : "", scan, scans_ ? (" of " + std::to_string(*scans_)).c_str() : "",
-                 p.x(), p.y(), p.z(), pose.edges + pose.planes, map.free_volume_m3(),
+    std::string details;
+    if (!again_) details = std::to_string(pose.edges + pose.planes) + " features  ";
+    std::fprintf(stderr, "%s%sscan %zu%s  at (%.1f, %.1f, %.1f)  %s%.0f m³ free  %s%s",
+                 terminal_ ? "\r\033[K" : "", again_ ? "mapped again: " : "", scan,
+                 scans_ ? (" of " + std::to_string(*scans_)).c_str() : "", p.x(), p.y(), p.z(),
+                 details.c_str(), map.free_volume_m3(),
                  pose.valid ? "" : ("lost: " + core::printable(pose.problem)).c_str(), terminal_ ? "" : "\n");
   }
   void end() const {
@@ -49,8 +56,16 @@ class ReplayLine {
   }
 
  private:
-  bool quiet_, terminal_ = isatty(STDERR_FILENO) == 1;
+  void begin_again() {
+    again_ = true;
+    scans_ = last_;
+    end();
+    std::fprintf(stderr, "Loops were closed: all scans are read again, and mapped at their corrected poses.\n");
+  }
+
+  bool quiet_, terminal_ = isatty(STDERR_FILENO) == 1, again_ = false;
   std::optional<std::size_t> scans_;
+  std::size_t last_ = 0;
 };
 
 core::OptionTable table_of(replay::ReplayOptions& options) {
@@ -163,7 +178,7 @@ int replay_scans(const ReplayArguments& args) {
   replay::ReplaySummary summary;
   replay::WrittenTruth truth;
   std::string damage;
-  const ReplayLine line(args.quiet || args.json, recording.sensors->scans());
+  ReplayLine line(args.quiet || args.json, recording.sensors->scans());
   try {
     if (recording.is_bag && recording.info.truth_topic != "none")
       truth =

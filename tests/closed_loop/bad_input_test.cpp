@@ -176,7 +176,7 @@ TEST(BadInput, ARunIsNeverOverwritten) {
   fs::create_directories(dir / "run");
   written(dir / "run" / "events.jsonl", "precious\n");
   expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"),
-                 {"has files of a flight already (events.jsonl)"});
+                 {"has files of a run already (events.jsonl)"});
   EXPECT_EQ(bytes_of(dir / "run" / "events.jsonl"), "precious\n");
 }
 
@@ -200,7 +200,7 @@ TEST(BadInput, AFileOfTheUsersIsNeverOverwritten) {
   for (const char* name : {"mission.info", "map.ply", "report.html", "truth.csv"}) {
     fs::create_directories(dir / "run");
     written(dir / "run" / name, "precious\n");
-    expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {name, "has files of a flight already"});
+    expect_refused(fly(dir, "--cave " + mesh + " --start '0 0 0'"), {name, "has files of a run already"});
     EXPECT_EQ(bytes_of(dir / "run" / name), "precious\n");
     EXPECT_EQ(std::distance(fs::directory_iterator(dir / "run"), {}), 1);
     fs::remove_all(dir / "run");

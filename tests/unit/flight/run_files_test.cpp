@@ -74,8 +74,8 @@ TEST(RunClaim, ATakenDirectoryIsRefusedInPlainWords) {
     EXPECT_EQ(
         std::string(e.what()),
         dir.path().string() +
-            ": has files of a flight already (events.jsonl); choose another --out, or replace the flight "
-            "with karst fly --force");
+            ": has files of a run already (events.jsonl); choose another --out, or remove that folder (karst fly "
+            "--force replaces it)");
   }
 }
 

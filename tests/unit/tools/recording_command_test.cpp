@@ -98,6 +98,15 @@ TEST(RecordingCommand, WhatIsNoBagIsAnError) {
   refused("head.db3", std::string("SQLite format 3\0", 16), "");
 }
 
+TEST(RecordingCommand, OfAFolderOfScansItPointsToReplay) {
+  Folder dir;
+  test::write_room_files(dir.path() / "scans");
+  const Printed p = run({"recording", "info", (dir.path() / "scans").string()});
+  EXPECT_EQ(p.code, 1);
+  EXPECT_NE(p.error.find("scans: is a folder of scans, not a bag: karst replay reads it"), std::string::npos)
+      << p.error;
+}
+
 TEST(ReplayCommand, OfABagSaysWhatItAssumedAndOfADamagedOneWhatItLeftOut) {
   Folder dir;
   const std::string whole = room_mcap(), bag = dir.write("room.mcap", whole);
