@@ -16,8 +16,8 @@ struct RecordingGuess {
 };
 
 /// `given`: what a recording file says, and `keys`: of what. Its units, origins and topics are not guessed
-/// anew; the mounting is, and `read_recording_info` puts the file's keys above it. What the bag's own settings
-/// say goes before what is guessed, and behind the recording file.
+/// anew; the mounting is, and `read_recording_info` puts the file's keys above it. What the bag's own
+/// settings say goes before what is guessed, and behind the recording file.
 RecordingGuess guess_recording(const BagSurvey& survey, const RecordingInfo& given = {},
                                const std::set<std::string>& keys = {});
 

@@ -130,13 +130,14 @@ std::string grid_lines(const Frame& frame, double step_m) {
   return out + "</g>\n";
 }
 
-/// Lines across the inside of a closed outline, in mm from the lower left to the upper right, within the frame.
+/// Lines across the inside of a closed outline, in mm from the lower left to the upper right, within the
+/// frame.
 std::vector<std::array<Point, 2>> hatching(const Line& outline, const Frame& frame) {
   // Lines of y - x = v; on each, the outline's edges are crossed where the inside begins or ends.
   const Point corner(frame.left_mm, frame.top_mm);
   std::vector<std::array<Point, 2>> lines;
-  for (double v = corner.y() - corner.x() - frame.width_mm;
-       v < corner.y() - corner.x() + frame.height_mm; v += kHatch_mm) {
+  for (double v = corner.y() - corner.x() - frame.width_mm; v < corner.y() - corner.x() + frame.height_mm;
+       v += kHatch_mm) {
     std::vector<Point> crossings;
     for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
       const Point a = frame.at(outline[i]), b = frame.at(outline[i + 1]);
@@ -167,8 +168,7 @@ std::string borders_of(const Drawing& drawing, const Frame& frame) {
   const std::string name = std::string("frame-") + core::name_of(drawing.view);  // a page may have several
   return "<clipPath id=\"" + name + "\">" +
          box(frame.left_mm, frame.top_mm, frame.width_mm, frame.height_mm, "") +
-         "</clipPath>\n<g clip-path=\"url(#" + name + ")\">\n" +
-         hatched(drawing.keep_out, frame) +
+         "</clipPath>\n<g clip-path=\"url(#" + name + ")\">\n" + hatched(drawing.keep_out, frame) +
          lines_of("keep-out", drawing.keep_out, frame, stroke(kKeepOut, kBorder_mm)) +
          lines_of("keep-in", drawing.keep_in, frame, stroke(kKeepIn, kBorder_mm, "3 0.8 0.6 0.8")) + "</g>\n";
 }

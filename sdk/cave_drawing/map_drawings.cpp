@@ -151,8 +151,7 @@ CaveDrawings map_drawings(const core::VoxelMap& map, const FlightRecord& record,
   }
   if (record.region) {
     const core::FlightRegion::Limits& limits = record.region->limits();
-    if (limits.keep_in)
-      draw_border(*limits.keep_in, free, entrance, bearing, &Drawing::keep_in, out);
+    if (limits.keep_in) draw_border(*limits.keep_in, free, entrance, bearing, &Drawing::keep_in, out);
     for (const core::Prism& prism : limits.keep_out)
       draw_border(prism, free, entrance, bearing, &Drawing::keep_out, out);
   }

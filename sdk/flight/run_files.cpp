@@ -112,9 +112,10 @@ void refuse_run(const fs::path& folder) {
 
 void refuse_taken(const fs::path& run_dir) {
   if (const std::string file = run_file_in(run_dir); !file.empty())
-    throw core::InputError(run_dir.string(), "",
-                           "has files of a run already (" + file +
-                               "); choose another --out, or remove that folder (karst fly --force replaces it)");
+    throw core::InputError(
+        run_dir.string(), "",
+        "has files of a run already (" + file +
+            "); choose another --out, or remove that folder (karst fly --force replaces it)");
 }
 
 void remove_stale_lock(const fs::path& run_dir) {

@@ -67,9 +67,10 @@ void print_survey(const replay::BagSurvey& survey, const replay::RecordingGuess&
 
 int show_recording(const RecordingArguments& args) {
   if (replay::holds_scan_files(args.file) && !replay::is_folder_of_bags(args.file))
-    throw core::InputError(args.file, "",
-                           "is a folder of scans, not a bag: karst replay reads it, and takes what the scans do "
-                           "not say from recording.info in it");
+    throw core::InputError(
+        args.file, "",
+        "is a folder of scans, not a bag: karst replay reads it, and takes what the scans do "
+        "not say from recording.info in it");
   const replay::BagSurvey survey = replay::survey_bag(args.file, replay::SurveyExtent::all);
   const replay::RecordingGuess guess = replay::guess_recording(survey);
   if (args.json)

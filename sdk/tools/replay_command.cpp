@@ -32,8 +32,8 @@ struct ReplayArguments {
   bool json = false, quiet = false, no_report = false, keys = false;
 };
 
-/// One line that is rewritten on a terminal, otherwise one line every hundred scans. If loops were closed, the
-/// scans come a second time.
+/// One line that is rewritten on a terminal, otherwise one line every hundred scans. If loops were closed,
+/// the scans come a second time.
 class ReplayLine {
  public:
   ReplayLine(bool quiet, std::optional<std::size_t> scans) : quiet_(quiet), scans_(scans) {}
@@ -60,7 +60,8 @@ class ReplayLine {
     again_ = true;
     scans_ = last_;
     end();
-    std::fprintf(stderr, "Loops were closed: all scans are read again, and mapped at their corrected poses.\n");
+    std::fprintf(stderr,
+                 "Loops were closed: all scans are read again, and mapped at their corrected poses.\n");
   }
 
   bool quiet_, terminal_ = isatty(STDERR_FILENO) == 1, again_ = false;

@@ -27,7 +27,8 @@ Output replay(const fs::path& recording, const fs::path& run) {
 /// "points N used, M left out": the same only with the same limits of range.
 std::string points_line(const Output& replayed) {
   const std::size_t begin = replayed.text.find("  points  ");
-  return begin == std::string::npos ? "" : replayed.text.substr(begin, replayed.text.find('\n', begin) - begin);
+  return begin == std::string::npos ? ""
+                                    : replayed.text.substr(begin, replayed.text.find('\n', begin) - begin);
 }
 
 /// Root mean square of the distance between two trajectories, after alignment.

@@ -46,8 +46,7 @@ class Body {
         prism.outline.emplace_back(x, number());
       }
       // A ring of a survey ends with the corner that it began with.
-      if (prism.outline.size() > 3 && prism.outline.back() == prism.outline.front())
-        prism.outline.pop_back();
+      if (prism.outline.size() > 3 && prism.outline.back() == prism.outline.front()) prism.outline.pop_back();
       read_heights(prism);
     } else {
       refuse(kGrammar);

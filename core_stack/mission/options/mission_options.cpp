@@ -111,8 +111,8 @@ void check_region(const std::string& source, const CoreOptions& o, const Vehicle
         source, o.region->nearest_part(p),
         format_text("leaves no room for %s at (%.2f, %.2f, %.2f): %.2f m from its border%s, where "
                     "%.2f m are needed",
-                    what, to_hundredths(p.x()), to_hundredths(p.y()), to_hundredths(p.z()), std::abs(depth_m), depth_m < 0 ? " and outside" : "",
-                    least_m));
+                    what, to_hundredths(p.x()), to_hundredths(p.y()), to_hundredths(p.z()), std::abs(depth_m),
+                    depth_m < 0 ? " and outside" : "", least_m));
   };
   require(start, vehicle.radius_m, "the vehicle's start");
   constexpr double kStep_m = 0.05;

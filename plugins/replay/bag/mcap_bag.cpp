@@ -258,8 +258,8 @@ class McapBag final : public ChunkedBag {
   }
 
   /// Chunks that only the summary at the end of the file tells of: a record before them has
-  /// a wrong length. Behind a piece that is missing its offsets are wrong: of a file that is not whole, that is
-  /// no further fault.
+  /// a wrong length. Behind a piece that is missing its offsets are wrong: of a file that is not whole, that
+  /// is no further fault.
   void use_summary(bool whole) try {
     const std::uint64_t tail = kFooterBytes + kMcapMagic.size();
     if (file_bytes() < tail || read_at(file_bytes() - kMcapMagic.size(), 8) != kMcapMagic) return;

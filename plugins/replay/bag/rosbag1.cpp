@@ -241,8 +241,8 @@ class Rosbag1 final : public ChunkedBag {
   }
 
   /// Chunks that only the index at the end of the file tells of: a record before them has a
-  /// wrong length. Behind a piece that is missing its offsets are wrong: of a file that is not whole, that is no
-  /// further fault.
+  /// wrong length. Behind a piece that is missing its offsets are wrong: of a file that is not whole, that is
+  /// no further fault.
   void use_index(std::uint64_t index, bool whole) try {
     if (file_bytes() - index > kMaxChunkBytes) return;
     const std::string records = read_at(index, file_bytes() - index);

@@ -23,8 +23,8 @@ struct Truth {
 };
 
 /// All names are present, null where the value is unknown, but for those of a survey, which are present if
-/// the mission has one, and of a replay. Depends only on the record and the ground truth; numbers are rounded to six decimals,
-/// so that replays of a run give the same bytes.
+/// the mission has one, and of a replay. Depends only on the record and the ground truth; numbers are rounded
+/// to six decimals, so that replays of a run give the same bytes.
 nlohmann::ordered_json evaluate(const RunRecord& run, const core::VoxelMap* map, const Truth& truth);
 
 /// Reads the run and its map and evaluates them. Throws InputError only if `run_dir` is not a directory;

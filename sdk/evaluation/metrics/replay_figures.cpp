@@ -32,8 +32,8 @@ std::optional<ReplayFigures> replay_figures(const RunRecord& run) {
   figures.scans = run.telemetry.rows;
   figures.lost = figures.scans - std::min(figures.scans, run.estimate.size());
   if (const auto state = run.loops.text.find("state"); state != run.loops.text.end())
-    figures.closures = static_cast<std::size_t>(std::count(state->second.begin(), state->second.end(),
-                                                           core::name_of(core::ClosureState::closed)));
+    figures.closures = static_cast<std::size_t>(
+        std::count(state->second.begin(), state->second.end(), core::name_of(core::ClosureState::closed)));
   figures.correction_m = greatest_distance_m(run.odometry, run.estimate);
   return figures;
 }

@@ -71,11 +71,10 @@ TEST(RunClaim, ATakenDirectoryIsRefusedInPlainWords) {
     RunClaim claim(dir.path());
     FAIL();
   } catch (const core::InputError& e) {
-    EXPECT_EQ(
-        std::string(e.what()),
-        dir.path().string() +
-            ": has files of a run already (events.jsonl); choose another --out, or remove that folder (karst fly "
-            "--force replaces it)");
+    EXPECT_EQ(std::string(e.what()), dir.path().string() +
+                                         ": has files of a run already (events.jsonl); choose another --out, "
+                                         "or remove that folder (karst fly "
+                                         "--force replaces it)");
   }
 }
 

@@ -264,10 +264,11 @@ void append(std::string& bytes, auto value) {
 /// Returns between the least and the greatest range of the LiDAR, some nearer than a bag's default of 0.5 m.
 TEST_F(ExportMcap, TheFileReplaysWithTheRangeOfItsRecording) {
   fs::create_directories(run_ / "scans");
-  std::ofstream(run_ / "scans/recording.info")
-      << "scans \"*.pcd\"\nstamp { from names unit ns of start }\ntime { unit ns of start period \"0.1 s\" }\n"
-         "lidar { position \"0 0 0.1\" rotation \"0 30.1234567891 0\" min_range \"0.3 m\" max_range \"150 m\" }\n"
-         "rings { by field }\n";
+  std::ofstream(run_ / "scans/recording.info") << "scans \"*.pcd\"\nstamp { from names unit ns of start "
+                                                  "}\ntime { unit ns of start period \"0.1 s\" }\n"
+                                                  "lidar { position \"0 0 0.1\" rotation \"0 30.1234567891 "
+                                                  "0\" min_range \"0.3 m\" max_range \"150 m\" }\n"
+                                                  "rings { by field }\n";
   constexpr int kPoints = 50;
   for (int scan = 1; scan <= 3; ++scan) {
     std::ofstream pcd(run_ / "scans" / (std::to_string(scan * 100'000'000) + ".pcd"));

@@ -365,7 +365,8 @@ TEST(RecordingGuess, NamesOfTopicsDoNotBreakItsText) {
 }
 
 /// The bag with a metadata record of karst after its header.
-std::string with_settings(std::string mcap, const std::vector<std::pair<std::string, std::string>>& settings) {
+std::string with_settings(std::string mcap,
+                          const std::vector<std::pair<std::string, std::string>>& settings) {
   std::string pairs;
   for (const auto& [key, value] : settings) pairs += test::mcap::text(key) + test::mcap::text(value);
   const std::size_t header = 8 + 9 + static_cast<unsigned char>(mcap[9]);
@@ -381,7 +382,8 @@ TEST(BagSensors, TakesWhatTheBagItselfSaysBeforeWhatIsGuessedAndAfterAFile) {
   bag.write(dir);
   const std::string mcap = test::mcap_file(bag.topics, bag.messages, {Compression::zstd, false, 10});
   const std::string path = dir.write(
-      "s.mcap", with_settings(mcap, {{"lidar.min_range", "0.2 m"}, {"lidar.position", "0 0 0.123456789012"}}));
+      "s.mcap",
+      with_settings(mcap, {{"lidar.min_range", "0.2 m"}, {"lidar.position", "0 0 0.123456789012"}}));
   const BagRecording r = open_bag_recording(path, "");
   EXPECT_EQ(r.info.min_range_m, 0.2);
   EXPECT_EQ(r.info.lidar_position, "0 0 0.123456789012");
@@ -399,11 +401,11 @@ TEST(BagSensors, SettingsOfABagThatAreWrongAreAnErrorUnlessAFileSetsTheirKeys) {
   bag.add_lidar("/points", kOuster, "lidar");
   bag.write(dir);
   const std::string mcap = test::mcap_file(bag.topics, bag.messages, {Compression::zstd, false, 10});
-  for (const auto& [key, value, reason] :
-       std::vector<std::array<std::string, 3>>{{"lidar.min_range", "near", "karst.recording: lidar.min_range"},
-                                               {"lidar.reach", "9 m", "karst.recording: lidar.reach"},
-                                               {"rings.by", "elevation", "rings.count"},
-                                               {"lidar.position", "0 0", "three numbers"}}) {
+  for (const auto& [key, value, reason] : std::vector<std::array<std::string, 3>>{
+           {"lidar.min_range", "near", "karst.recording: lidar.min_range"},
+           {"lidar.reach", "9 m", "karst.recording: lidar.reach"},
+           {"rings.by", "elevation", "rings.count"},
+           {"lidar.position", "0 0", "three numbers"}}) {
     const std::string path = dir.write("w.mcap", with_settings(mcap, {{key, value}}));
     EXPECT_NE(error_of(path).find("w.mcap: "), std::string::npos) << error_of(path);
     EXPECT_NE(error_of(path).find(reason), std::string::npos) << error_of(path);

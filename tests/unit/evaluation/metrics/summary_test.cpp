@@ -35,10 +35,9 @@ TEST(Summary, LeavesOutWhatIsNotKnown) {
 }
 
 TEST(Summary, OfAReplayTellsOfTheRecording) {
-  ordered_json m = {{"policy", nullptr},      {"recording", "a.bag"},      {"scans", 384},
-                    {"scans_lost", 0},        {"flight_time_s", 38.5},     {"path_length_m", 45.63},
-                    {"loops_closed", 0},      {"loop_correction_m", nullptr},
-                    {"explored_volume_m3", 539.1}};
+  ordered_json m = {{"policy", nullptr}, {"recording", "a.bag"},         {"scans", 384},
+                    {"scans_lost", 0},   {"flight_time_s", 38.5},        {"path_length_m", 45.63},
+                    {"loops_closed", 0}, {"loop_correction_m", nullptr}, {"explored_volume_m3", 539.1}};
   EXPECT_EQ(summary_of(m, {.sentence = "replayed: the recording ended"}),
             "a.bag: 384 scans in 38 s along 45.6 m, 539 m³ of free volume, no loop closed; replayed: the "
             "recording ended");

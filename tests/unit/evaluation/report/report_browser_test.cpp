@@ -327,8 +327,10 @@ TEST(ReportInBrowser, OfAReplaySaysWhatWasReplayedAndShowsBothPaths) {
       << "older_s,newer_s,state,older_x,older_y,older_z,newer_x,newer_y,newer_z\n1,40,closed,1,2,3,1.5,2,3\n";
   std::ofstream(dir.path() / "mission.info") << "replay { scans /data/cave.bag }\n";
   std::ofstream(dir.path() / "events.jsonl")
-      << R"({"t": 0, "kind": "phase", "phase": "replay", "reason": "900 scans"})" << "\n"
-      << R"({"t": 30, "kind": "outcome", "outcome": "replayed", "reason": "the recording ended"})" << "\n";
+      << R"({"t": 0, "kind": "phase", "phase": "replay", "reason": "900 scans"})"
+      << "\n"
+      << R"({"t": 30, "kind": "outcome", "outcome": "replayed", "reason": "the recording ended"})"
+      << "\n";
   write_report(dir.path());
   const std::string body = show_page(dir.path() / "report.html").body;
   for (const char* there : {">cave.bag · replay<", "✓ replayed", "path, corrected", "path before loops",

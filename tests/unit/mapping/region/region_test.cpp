@@ -208,7 +208,8 @@ TEST(RegionKeys, APolygonMayRepeatItsFirstCorner) {
   RegionKeys open, closed;
   open.keep_in = "polygon -10 -10 10 -10 10 10 -10 10 from -5 to 5";
   closed.keep_in = "polygon -10 -10 10 -10 10 10 -10 10 -10 -10 from -5 to 5";
-  EXPECT_EQ(region_of("m", closed)->limits().keep_in->outline, region_of("m", open)->limits().keep_in->outline);
+  EXPECT_EQ(region_of("m", closed)->limits().keep_in->outline,
+            region_of("m", open)->limits().keep_in->outline);
   closed.keep_in = "polygon 0 0 5 0 0 0";
   EXPECT_THROW(region_of("m", closed), InputError);
 }

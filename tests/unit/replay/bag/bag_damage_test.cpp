@@ -186,9 +186,9 @@ TEST(BagDamage, OfWhatNoChunkFollowsTheBytesAreCounted) {
   const auto bag = open_bag(dir.write("end.mcap", bytes));
   ASSERT_GT(bag->faults().count(), 0u);
   EXPECT_EQ(bag->faults().first().front().place, "byte " + std::to_string(begin));
-  EXPECT_EQ(bag->faults().first().front().reason,
-            "no record begins here; the " + std::to_string(bytes.size() - begin) +
-                " bytes from there on are not read");
+  EXPECT_EQ(bag->faults().first().front().reason, "no record begins here; the " +
+                                                      std::to_string(bytes.size() - begin) +
+                                                      " bytes from there on are not read");
 }
 
 /// The second chunk says that it holds 10 bytes, decompressed.
