@@ -1,10 +1,12 @@
 #include "core_stack/mapping/prior/earlier_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "core_stack/common/format_text.h"
+#include "core_stack/mapping/registration/rock_surface.h"
 #include "core_stack/mapping/registration/upright_icp.h"
 
 namespace karst::core {
@@ -16,12 +18,23 @@ float log_odds_of(double probability) {
   return static_cast<float>(std::log(probability / (1 - probability)));
 }
 
+/// From a pose that may be off by most of a cell, and its neighbour's plane beyond.
+FinishedPose finished(const MapPiece& earlier, const MapPiece& seen, const Pose& T_earlier_seen) {
+  const double cell_m = std::max(earlier.resolution_m, seen.resolution_m);
+  const Pose T =
+      upright_icp(earlier, seen, T_earlier_seen, {{2.5 * cell_m, 20, 4000}, {1.5 * cell_m, 20, 4000}});
+  return {T, surface_residual_m(earlier, seen, T, OverlayOptions{}.near_cells * cell_m)};
+}
+
 }  // namespace
 
 std::shared_ptr<const EarlierMap> earlier_map_of(std::string name, std::shared_ptr<const VoxelMap> cells) {
   if (cells->occupied_cells() == 0) throw std::invalid_argument("holds no rock");
   if (cells->free_cells() == 0) throw std::invalid_argument("knows no free space");
-  return std::make_shared<const EarlierMap>(EarlierMap{std::move(name), piece_of(std::move(cells))});
+  MapPiece piece = piece_of(std::move(cells));
+  MapPiece surface = on_rock_surface(piece);
+  return std::make_shared<const EarlierMap>(
+      EarlierMap{std::move(name), std::move(piece), std::move(surface)});
 }
 
 std::shared_ptr<const VoxelMap> surroundings(const VoxelMap& map, const Vec3& place, double reach_m) {
@@ -43,6 +56,9 @@ MapRegistrationOptions localization_limits() {
   // Wrong caves reached an overlap of 0.92 and a residual of 0.75 cells (docs/results/earlier_map.md).
   o.limits.min_overlap = 0.85;
   o.limits.max_residual_cells = 0.7;
+  // Rock that is seen from one place has gaps, through which rays that graze it free cells of it.
+  o.overlay.free_beside = true;
+  o.limits.min_agreement = 0.99;
   return o;
 }
 
@@ -53,17 +69,20 @@ MapRegistration locate_in(const EarlierMap& earlier, std::shared_ptr<const Voxel
     nothing.reason = "no rock is seen";
     return nothing;
   }
-  MapRegistration found =
-      register_maps(earlier.piece, piece_of(std::move(seen)), options,
-                    [&earlier](const MapPiece& source, const Pose& T, const std::vector<IcpRound>& rounds) {
-                      return upright_icp(earlier.piece, source, T, rounds);
-                    });
+  const MapPiece piece = piece_of(std::move(seen)), surface = on_rock_surface(piece);
+  MapRegistration found = register_maps(
+      earlier.piece, piece, options,
+      [&earlier](const MapPiece& source, const Pose& T, const std::vector<IcpRound>& rounds) {
+        return upright_icp(earlier.piece, source, T, rounds);
+      },
+      [&earlier, &surface](const Pose& T) { return finished(earlier.surface, surface, T); });
   // All of a small earlier map may lie on what is seen: that most of what is seen lies on it counts here.
   if (const double shared = found.overlay.source_overlap();
       found.trusted && shared < options.limits.min_overlap) {
     found.trusted = false;
-    found.reason =
-        format_text("only %.0f %% of the rock that is seen lies on rock of the earlier map", 100 * shared);
+    found.reason = format_text(
+        "only %.2f %% of the rock that is seen lies on rock of the earlier map; at least %.2f %% must",
+        100 * shared, 100 * options.limits.min_overlap);
   }
   return found;
 }

@@ -14,6 +14,7 @@ namespace karst::core {
 struct EarlierMap {
   std::string name;  // its file, for messages
   MapPiece piece;    // with cells
+  MapPiece surface;  // the same on the rock's surface (rock_surface.h)
 };
 
 /// Throws std::invalid_argument if the map has no occupied or no free cell.

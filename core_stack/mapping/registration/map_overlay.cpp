@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core_stack/mapping/occupancy/voxel_reader.h"
 
@@ -11,6 +12,17 @@ namespace {
 // Rock in known free space has a larger weight than rock that fits: the walls of any two passages can fit,
 // while two maps of one place hardly ever contradict each other.
 constexpr double kContradiction = 3, kRoughContradiction = 2;
+
+bool free_beside(const VoxelMap& cells, const CellKey& k) {
+  constexpr CellKey kBeside[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  return std::all_of(std::begin(kBeside), std::end(kBeside),
+                     [&](const CellKey& step) { return cells.at(k + step) == Cell::free; });
+}
+
+bool in_free(const VoxelMap& cells, const Vec3& p, const OverlayOptions& options) {
+  const CellKey k = cells.key_of(p);
+  return cells.at(k) == Cell::free && (!options.free_beside || free_beside(cells, k));
+}
 
 OverlayCounts count(const MapPiece& into, const MapPiece& from, const Pose& T_into_from,
                     const OverlayOptions& options) {
@@ -25,7 +37,7 @@ OverlayCounts count(const MapPiece& into, const MapPiece& from, const Pose& T_in
     if (d <= near_m) {
       ++counts.near;
       counts.squares_m2 += d * d;
-    } else if (d > free_m && into.cells && into.cells->at(p) == Cell::free) {
+    } else if (d > free_m && into.cells && in_free(*into.cells, p, options)) {
       ++counts.in_free;
     }
   }

@@ -27,8 +27,11 @@ struct Overlay {
 };
 
 struct OverlayOptions {
-  double near_cells = 1.75;        // of the coarser map: nearer rock counts as the same
-  double free_cells = 3.0;         // rock in a free cell and this far from rock contradicts
+  double near_cells = 1.75;  // of the coarser map: nearer rock counts as the same
+  double free_cells = 3.0;   // rock in a free cell and this far from rock contradicts
+  // ... only if the six cells beside the free one are free, too: rays that graze rock free cells of it
+  // where the scans of one place have not hit it.
+  bool free_beside = false;
   std::size_t max_points = 20000;  // of each map, evenly picked
 };
 

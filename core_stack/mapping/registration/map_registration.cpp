@@ -12,7 +12,11 @@ namespace {
 struct Candidate {
   Pose T_target_source;
   Overlay overlay;
+  std::optional<double> surface_residual_m = {};
 };
+
+/// A rival's surfaces may lie this much farther apart than those of the best pose, whatever the limit.
+constexpr double kRefutedRatio = 2;
 
 double tilt_of(const Pose& T) {
   return std::acos(std::clamp((T.orientation * Vec3::UnitZ()).z(), -1.0, 1.0));
@@ -44,6 +48,26 @@ std::vector<Candidate> distinct_best(std::vector<Candidate> all, std::size_t mos
   return kept;
 }
 
+/// Whether a pose is no rival of the best one: its own surfaces lie apart.
+bool refuted(const Candidate& c, const Candidate& best, const RegistrationLimits& limits, double cell_m) {
+  return c.surface_residual_m && best.surface_residual_m &&
+         *c.surface_residual_m > limits.max_surface_residual_cells * cell_m &&
+         *c.surface_residual_m > kRefutedRatio * *best.surface_residual_m;
+}
+
+/// A figure and the limit that it breaks, with as few decimals as show that they differ.
+struct Broken {
+  std::string figure, limit;
+};
+Broken broken(double figure, double limit) {
+  Broken b;
+  for (int decimals = 1; decimals <= 6; ++decimals) {
+    b = {format_text("%.*f", decimals, figure), format_text("%.*f", decimals, limit)};
+    if (b.figure != b.limit) break;
+  }
+  return b;
+}
+
 /// The reason to reject the registration; empty if there is none.
 std::string objection(const MapRegistration& r, double cell_m, bool free_known,
                       const MapRegistrationOptions& options) {
@@ -51,20 +75,29 @@ std::string objection(const MapRegistration& r, double cell_m, bool free_known,
   // Two more degrees of freedom make accidental fits more likely.
   const double needed = options.coarse.gravity_known ? 1.0 : 1.5;
   const double min_overlap = needed * (free_known ? limits.min_overlap : limits.min_overlap_blind);
-  if (r.overlay.overlap() < min_overlap)
-    return format_text("only %.0f %% of the rock coincides; at least %.0f %% must%s",
-                       100 * r.overlay.overlap(), 100 * min_overlap,
-                       free_known ? "" : " where no free space is known");
-  if (r.shared_m2 < limits.min_shared_m2)
-    return format_text("only %.0f m^2 of rock coincide; at least %.0f m^2 must", r.shared_m2,
-                       limits.min_shared_m2);
-  if (r.overlay.agreement() < limits.min_agreement)
-    return format_text(
-        "%.0f %% of the rock stands in space the other map knows to be free; at most %.0f %% may",
-        100 * (1 - r.overlay.agreement()), 100 * (1 - limits.min_agreement));
-  if (r.overlay.residual_m() > limits.max_residual_cells * cell_m)
-    return format_text("the residual is %.2f m; at most %.2f m may remain", r.overlay.residual_m(),
-                       limits.max_residual_cells * cell_m);
+  if (r.overlay.overlap() < min_overlap) {
+    const Broken b = broken(100 * r.overlay.overlap(), 100 * min_overlap);
+    return "only " + b.figure + " % of the rock coincides; at least " + b.limit + " % must" +
+           (free_known ? "" : " where no free space is known");
+  }
+  if (r.shared_m2 < limits.min_shared_m2) {
+    const Broken b = broken(r.shared_m2, limits.min_shared_m2);
+    return "only " + b.figure + " m^2 of rock coincide; at least " + b.limit + " m^2 must";
+  }
+  if (r.overlay.agreement() < limits.min_agreement) {
+    const Broken b = broken(100 * (1 - r.overlay.agreement()), 100 * (1 - limits.min_agreement));
+    return b.figure + " % of the rock stands in space the other map knows to be free; at most " + b.limit +
+           " % may";
+  }
+  if (const double limit_m = limits.max_residual_cells * cell_m; r.overlay.residual_m() > limit_m) {
+    const Broken b = broken(100 * r.overlay.residual_m(), 100 * limit_m);
+    return "the residual is " + b.figure + " cm; at most " + b.limit + " cm may remain";
+  }
+  if (const double limit_m = limits.max_surface_residual_cells * cell_m;
+      r.surface_residual_m.value_or(0) > limit_m) {
+    const Broken b = broken(100 * *r.surface_residual_m, 100 * limit_m);
+    return "the surfaces of the rock lie " + b.figure + " cm apart; at most " + b.limit + " cm may remain";
+  }
   if (options.coarse.gravity_known && tilt_of(r.T_target_source) > limits.max_tilt_rad)
     return format_text(
         "the maps would be tilted against each other by %.1f deg, though both know where up is",
@@ -73,9 +106,10 @@ std::string objection(const MapRegistration& r, double cell_m, bool free_known,
     return format_text(
         "the rock that coincides leaves a direction free, as a smooth tube does (hold %.3f; at least %.3f)",
         r.hold, limits.min_hold);
-  if (r.rival > limits.max_rival)
-    return format_text("another pose fits nearly as well (%.0f %% as good; at most %.0f %% may be)",
-                       100 * r.rival, 100 * limits.max_rival);
+  if (r.rival > limits.max_rival) {
+    const Broken b = broken(100 * r.rival, 100 * limits.max_rival);
+    return "another pose fits nearly as well (" + b.figure + " % as good; at most " + b.limit + " % may be)";
+  }
   return "";
 }
 
@@ -132,7 +166,8 @@ double hold_of(const MapPiece& target, const MapPiece& source, const Pose& T_tar
 }
 
 MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
-                              const MapRegistrationOptions& options, const RefinePose& refine) {
+                              const MapRegistrationOptions& options, const RefinePose& refine,
+                              const FinishPose& finish) {
   const double cell_m = std::max(target.resolution_m, source.resolution_m);
   const bool free_known = target.knows_free_space() || source.knows_free_space();
   MapRegistration result;
@@ -152,6 +187,11 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
   candidates = distinct_best(std::move(candidates), options.finalists, middle, cell_m);
   for (Candidate& c : candidates) {
     c.T_target_source = refine(source, c.T_target_source, options.thorough);
+    if (finish) {
+      const FinishedPose finished = finish(c.T_target_source);
+      c.T_target_source = finished.T_target_source;
+      c.surface_residual_m = finished.surface_residual_m;
+    }
     c.overlay = overlay(target, source, c.T_target_source, options.overlay);
   }
   const auto best = std::max_element(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
@@ -159,13 +199,15 @@ MapRegistration register_maps(const MapPiece& target, const MapPiece& source,
   });
   result.T_target_source = best->T_target_source;
   result.overlay = best->overlay;
+  result.surface_residual_m = best->surface_residual_m;
   const double near_m = options.overlay.near_cells * cell_m;
   result.hold = hold_of(target, source, best->T_target_source, near_m, options.coarse.gravity_known);
   result.shared_m2 = best->overlay.source_overlap() * static_cast<double>(source.surface.size()) *
                      source.resolution_m * source.resolution_m;
   double rival = 0;
   for (const Candidate& c : candidates)
-    if (!same_pose(c, *best, middle, cell_m)) rival = std::max(rival, c.overlay.score());
+    if (!same_pose(c, *best, middle, cell_m) && !refuted(c, *best, options.limits, cell_m))
+      rival = std::max(rival, c.overlay.score());
   result.rival = best->overlay.score() > 0 ? rival / best->overlay.score() : 1;
   result.reason = objection(result, cell_m, free_known, options);
   result.trusted = result.reason.empty();
