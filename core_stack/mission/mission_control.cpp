@@ -364,6 +364,7 @@ void MissionControl::take_off() {
 
 void MissionControl::look() {
   earlier_map_.step();
+  if (endurance_.seconds_left(now()) < onboard_.options.mission.home_reserve_s) earlier_map_.hurry();
   if (earlier_map_.undecided() || !onboard_.flight.at_rest(now() - kLastLook)) return;
   const std::string& refusal = earlier_map_.refusal();
   if (refusal.empty()) return enter(Phase::explore, "");

@@ -62,12 +62,12 @@ void describe_mission(OptionTable& t, Mission& m, AutoKeys* auto_keys = nullptr)
     s.add("start_digest", m.earlier.digest, {},
           "SHA-256 of the file of map.start, which is recorded; another one is refused; empty: any");
     s.add("required", m.core.earlier.required,
-          "the vehicle lands before it explores if it does not find its place in map.start; else it explores "
-          "as "
-          "without the map");
+          "it explores only with its place in map.start: it hovers and looks for it for map.search_time, and "
+          "then lands; false: it explores as without the map meanwhile");
     s.add(
         "search_time", m.core.earlier.search_time_s, "s", 0, 3600,
-        "after the first hover, the vehicle looks for its place in map.start again and again for this long");
+        "after the first hover, the vehicle looks for its place in map.start again and again for this long; "
+        "with map.required it hovers meanwhile");
   });
   t.section(kRegionSection, m.region);
   t.under("record", [&m](OptionTable& r) {

@@ -36,6 +36,7 @@ event::EarlierMap event_of(event::EarlierMapState state, int attempt, const MapR
   e.overlap = r.overlay.source_overlap();
   e.agreement = r.overlay.agreement();
   e.residual_m = r.overlay.residual_m();
+  e.surface_residual_m = r.surface_residual_m;
   e.hold = r.hold;
   e.rival = r.rival;
   return e;
@@ -48,14 +49,19 @@ EarlierMapSearch::EarlierMapSearch(Onboard& onboard)
       state_(onboard.options.earlier.map ? State::first : State::none),
       pause_(kFirstPause) {}
 
+bool EarlierMapSearch::undecided() const {
+  return state_ == State::first || state_ == State::takes_in || (state_ == State::later && required());
+}
+
 void EarlierMapSearch::step() {
   if (state_ != State::first && state_ != State::later) return;
   const TimeNs now = onboard_.now();
   if (begun_ == 0) begun_ = now;
-  if (state_ == State::first && now - begun_ > kFirstWait) go_on_without("the search took longer than 20 s");
-  if (running_ || state_ == State::over) return;
-  if (state_ == State::later && now - begun_ > from_seconds(onboard_.options.earlier.search_time_s))
-    return give_up();
+  if (state_ == State::first && now - begun_ > kFirstWait) look_later("the search took longer than 20 s");
+  // An answer that is late is waited for; in the hover, no more than 20 s beyond the search time.
+  const bool hovers = state_ == State::later && required();
+  if (running_ && !(hovers && now - begun_ > search_time() + kFirstWait)) return;
+  if (state_ == State::later && now - begun_ > search_time()) return give_up();
   if (now >= next_) look();
 }
 
@@ -101,19 +107,16 @@ void EarlierMapSearch::on_answer(const Found& found) {
     return take_in(found.cells, 0);
   }
   onboard_.recorder.write(now, event_of(event::EarlierMapState::not_found, attempts_, found.registration));
-  go_on_without(found.registration.reason);
+  look_later(found.registration.reason);
 }
 
-void EarlierMapSearch::go_on_without(const std::string& reason) {
+void EarlierMapSearch::look_later(const std::string& reason) {
   last_reason_ = reason;
-  if (onboard_.options.earlier.required) {
-    refusal_ = "it cannot find its place in the earlier map: " + last_reason_;
-    state_ = State::over;
-    return;
-  }
   state_ = State::later;
   next_ = onboard_.now() + pause_;
   pause_ = std::min(2 * pause_, kLongestPause);
+  // It does not hover for a search that would begin too late.
+  if (required() && !running_ && next_ - begun_ > search_time()) give_up();
 }
 
 /// In parts, one after another; exploration that waits goes on after the last one.
@@ -132,8 +135,13 @@ void EarlierMapSearch::take_in(std::shared_ptr<const std::vector<CellValue>> cel
       });
 }
 
+void EarlierMapSearch::hurry() {
+  if (state_ == State::later && required()) give_up();
+}
+
 void EarlierMapSearch::give_up() {
   state_ = State::over;
+  if (required()) refusal_ = "it cannot find its place in the earlier map: " + last_reason_;
   onboard_.recorder.write(onboard_.now(), event::EarlierMap{.state = event::EarlierMapState::given_up,
                                                             .reason = last_reason_,
                                                             .attempt = attempts_});

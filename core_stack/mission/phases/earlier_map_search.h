@@ -2,7 +2,8 @@
 // map's cells in. Docs: docs/earlier_map.md.
 //
 //   first hover: what is seen is copied -> located in the earlier map -> found: its cells are taken in
-//                       ^                        -> not found: later again, from where it is then
+//                       ^                        -> not found: later again, from where it is then; if the
+//                                                   mission requires it, from the first hover
 //
 // The search is a job of the lane for registration: neither mapping nor localization waits for it.
 #pragma once
@@ -23,11 +24,14 @@ class EarlierMapSearch {
   void step();
   /// The vehicle turns back: what is found from now on is not taken in.
   void end();
+  /// The battery or the time allowed only just suffices to land: after its first answer it hovers no longer
+  /// for its place.
+  void hurry();
   /// Whether exploration waits for it: there is an earlier map, and the first answer is still to come, or the
-  /// cells that it led to.
-  bool undecided() const { return state_ == State::first || state_ == State::takes_in; }
+  /// cells that it led to; if the mission requires its place, until it is found or the search time is over.
+  bool undecided() const;
   /// Why the vehicle may not explore: the mission requires its place in the earlier map, and it was not found
-  /// from the first hover. "" if it may.
+  /// from the first hover within the search time. "" if it may.
   const std::string& refusal() const { return refusal_; }
 
  private:
@@ -41,8 +45,10 @@ class EarlierMapSearch {
   void locate(std::shared_ptr<const VoxelMap> seen);
   void on_answer(const Found& found);
   void take_in(std::shared_ptr<const std::vector<CellValue>> cells, std::size_t begin);
-  void go_on_without(const std::string& reason);
+  void look_later(const std::string& reason);
   void give_up();
+  bool required() const { return onboard_.options.earlier.required; }
+  TimeNs search_time() const { return from_seconds(onboard_.options.earlier.search_time_s); }
 
   Onboard& onboard_;
   State state_;

@@ -320,15 +320,17 @@ struct EarlierMap {
   int attempt = 0;
   std::optional<Vec3> position = {};  // of the earlier map's origin in the flight, as the next
   std::optional<double> heading_rad = {};
-  std::optional<double> overlap = {}, agreement = {}, residual_m = {}, hold = {}, rival = {};
+  std::optional<double> overlap = {}, agreement = {}, residual_m = {}, surface_residual_m = {}, hold = {},
+                        rival = {};
   std::optional<double> free_m3 = {};  // of the earlier map, if it was found
   static constexpr auto fields() {
-    return std::make_tuple(Field{"state", &EarlierMap::state}, Field{"reason", &EarlierMap::reason},
-                           Field{"attempt", &EarlierMap::attempt}, Field{"position", &EarlierMap::position},
-                           Field{"heading", &EarlierMap::heading_rad}, Field{"overlap", &EarlierMap::overlap},
-                           Field{"agreement", &EarlierMap::agreement},
-                           Field{"residual", &EarlierMap::residual_m}, Field{"hold", &EarlierMap::hold},
-                           Field{"rival", &EarlierMap::rival}, Field{"free_m3", &EarlierMap::free_m3});
+    return std::make_tuple(
+        Field{"state", &EarlierMap::state}, Field{"reason", &EarlierMap::reason},
+        Field{"attempt", &EarlierMap::attempt}, Field{"position", &EarlierMap::position},
+        Field{"heading", &EarlierMap::heading_rad}, Field{"overlap", &EarlierMap::overlap},
+        Field{"agreement", &EarlierMap::agreement}, Field{"residual", &EarlierMap::residual_m},
+        Field{"surface_residual", &EarlierMap::surface_residual_m}, Field{"hold", &EarlierMap::hold},
+        Field{"rival", &EarlierMap::rival}, Field{"free_m3", &EarlierMap::free_m3});
   }
 };
 
