@@ -42,27 +42,36 @@ std::shared_ptr<const VoxelMap> seen_in(const Tunnel& tunnel) {
       tunnel.map(7, 25), [](const Vec3& p) -> Vec3 { return kTruth * p; }, kLow, kHigh);
 }
 
+// Drawn once for all tests.
+const Tunnel kTunnel{.phase = 0.4};
+std::shared_ptr<const EarlierMap> same_tunnel() {
+  static const auto map = earlier(kTunnel.map(0, 40));
+  return map;
+}
+std::shared_ptr<const VoxelMap> seen_there() {
+  static const auto seen = seen_in(kTunnel);
+  return seen;
+}
+
 TEST(EarlierMap, ThePlaceIsFoundInTheMapOfTheSameTunnel) {
-  const Tunnel tunnel{.phase = 0.4};
-  const MapRegistration r = locate_in(*earlier(tunnel.map(0, 40)), seen_in(tunnel));
+  const MapRegistration r = locate_in(*same_tunnel(), seen_there());
   ASSERT_TRUE(r.trusted) << r.reason;
   EXPECT_LT((r.T_target_source.position - kTruth.position).norm(), 0.02);
   EXPECT_LT(r.T_target_source.orientation.angularDistance(kTruth.orientation), 0.005);
   EXPECT_LT(r.surface_residual_m.value(), 0.04);
-  const MapRegistration again = locate_in(*earlier(tunnel.map(0, 40)), seen_in(tunnel));
+  const MapRegistration again = locate_in(*same_tunnel(), seen_there());
   EXPECT_EQ(again.T_target_source.position, r.T_target_source.position);
   EXPECT_EQ(again.T_target_source.orientation.coeffs(), r.T_target_source.orientation.coeffs());
 }
 
 /// Half a cell off, the steps of the cells of two maps in one frame fit, too.
 TEST(EarlierMap, ThePlaceIsRightToCentimetresWhereTheCellsOfBothMapsFit) {
-  const Tunnel tunnel{.phase = 0.4};
-  const auto map = earlier(tunnel.map(0, 40));
-  for (const double begin : {3.0, 7.0, 12.0}) {
-    const auto seen = std::make_shared<VoxelMap>(tunnel.map(begin, begin + 18));
+  const auto map = same_tunnel();
+  for (const double begin : {3.0, 12.0}) {
+    const auto seen = std::make_shared<VoxelMap>(kTunnel.map(begin, begin + 18));
     const MapRegistration r = locate_in(*map, seen);
     ASSERT_TRUE(r.trusted) << r.reason;
-    const Vec3 place = tunnel.centre(begin + 9);
+    const Vec3 place = kTunnel.centre(begin + 9);
     EXPECT_LT((r.T_target_source * place - place).norm(), 0.02) << begin;
   }
 }
@@ -72,38 +81,36 @@ TEST(EarlierMap, ThePlaceIsRightToCentimetresWhereTheCellsOfBothMapsFit) {
 TEST(EarlierMap, ARivalThatItsSurfacesRefuteDoesNotCount) {
   const Tunnel tunnel{.phase = 0.4, .bend_m = 0.8, .knobs_m = 0.15};
   const auto map = earlier(tunnel.map(0, 40));
-  const MapRegistration r = locate_in(*map, seen_in(tunnel));
+  const auto seen = seen_in(tunnel);
+  const MapRegistration r = locate_in(*map, seen);
   ASSERT_TRUE(r.trusted) << r.reason;
   EXPECT_LT((r.T_target_source.position - kTruth.position).norm(), 0.02);
   MapRegistrationOptions all_are_rivals = localization_limits();
   all_are_rivals.limits.max_surface_residual_cells = 100;
-  const MapRegistration refused = locate_in(*map, seen_in(tunnel), all_are_rivals);
+  const MapRegistration refused = locate_in(*map, seen, all_are_rivals);
   EXPECT_TRUE(refused.reason.starts_with("another pose fits nearly as well")) << refused.reason;
   EXPECT_FALSE(
-      locate_in(*earlier(Tunnel{.phase = 2, .bend_m = 0.8, .knobs_m = 0.15}.map(0, 40)), seen_in(tunnel))
-          .trusted);
+      locate_in(*earlier(Tunnel{.phase = 2, .bend_m = 0.8, .knobs_m = 0.15}.map(0, 40)), seen).trusted);
 }
 
 /// Passages that repeat: whichever it is in, another is as good.
 TEST(EarlierMap, APlaceThatIsThereTwiceIsRefused) {
-  const Tunnel tunnel{.phase = 0.4};
-  VoxelMap twice = tunnel.map(0, 26);
-  tunnel.map(0, 26).for_each_known([&](const CellKey& k, Cell, float value) {
+  VoxelMap twice = kTunnel.map(0, 26);
+  kTunnel.map(0, 26).for_each_known([&](const CellKey& k, Cell, float value) {
     twice.assign(k + CellKey{0, 250, 0}, 1, value);
   });
-  const MapRegistration r = locate_in(*earlier(std::move(twice)), seen_in(tunnel));
+  const MapRegistration r = locate_in(*earlier(std::move(twice)), seen_there());
   EXPECT_FALSE(r.trusted);
   EXPECT_TRUE(r.reason.starts_with("another pose fits nearly as well")) << r.reason;
 }
 
 /// "2 % stands in free space; at most 2 % may" says nothing.
 TEST(EarlierMap, ARefusalNamesAFigureThatBreaksItsLimit) {
-  const Tunnel tunnel{.phase = 0.4};
-  const auto map = earlier(tunnel.map(0, 40));
-  const double overlap = locate_in(*map, seen_in(tunnel)).overlay.overlap();
+  const auto map = same_tunnel();
+  const double overlap = locate_in(*map, seen_there()).overlay.overlap();
   MapRegistrationOptions just_refused = localization_limits();
   just_refused.limits.min_overlap = overlap + 1e-5;
-  const std::string reason = locate_in(*map, seen_in(tunnel), just_refused).reason;
+  const std::string reason = locate_in(*map, seen_there(), just_refused).reason;
   double is = 0, must_be = 0;
   ASSERT_EQ(
       std::sscanf(reason.c_str(), "only %lf %% of the rock coincides; at least %lf %% must", &is, &must_be),
@@ -113,21 +120,19 @@ TEST(EarlierMap, ARefusalNamesAFigureThatBreaksItsLimit) {
 }
 
 TEST(EarlierMap, OtherTunnelsAreRefused) {
-  const Tunnel tunnel{.phase = 0.4};
   for (const double phase : {2.0, 5.1}) {
-    const MapRegistration r = locate_in(*earlier(Tunnel{.phase = phase}.map(0, 40)), seen_in(tunnel));
+    const MapRegistration r = locate_in(*earlier(Tunnel{.phase = phase}.map(0, 40)), seen_there());
     EXPECT_FALSE(r.trusted) << "phase " << phase;
     EXPECT_NE(r.reason, "");
   }
-  const MapRegistration elsewhere = locate_in(*earlier(tunnel.map(40, 80)), seen_in(tunnel));
+  const MapRegistration elsewhere = locate_in(*earlier(kTunnel.map(40, 80)), seen_there());
   EXPECT_FALSE(elsewhere.trusted) << "another part of it";
 }
 
 TEST(EarlierMap, AMirroredAndAScaledMapAreRefused) {
-  const Tunnel tunnel{.phase = 0.4};
   const auto of = [&](const auto& into_map) {
-    const auto map = seen_through(tunnel.map(0, 40), into_map, Vec3(-5, -20, -12), Vec3(50, 20, 12));
-    return locate_in(*earlier_map_of("m", map), seen_in(tunnel));
+    const auto map = seen_through(kTunnel.map(0, 40), into_map, Vec3(-5, -20, -12), Vec3(50, 20, 12));
+    return locate_in(*earlier_map_of("m", map), seen_there());
   };
   ASSERT_TRUE(of([](const Vec3& p) -> Vec3 { return p; }).trusted) << "as it is";
   EXPECT_FALSE(of([](const Vec3& p) -> Vec3 { return {p.x(), -p.y(), p.z()}; }).trusted);
