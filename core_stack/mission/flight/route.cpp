@@ -30,12 +30,10 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
   const Flight::CommittedSegment& committed = start.committed;
   // A parabola turns back before the committed segment's end, where the vehicle may be too fast still. A bend
   // of that segment itself speaks against no parabola.
-  std::vector<Vec3> plain = committed.points;
-  plain.insert(plain.end(), path.points.begin() + 1, path.points.end());
-  const double needed_mps =
-      std::min(committed.speed_mps / (1 + kMayExceed), greatest_start_speed_mps(plain, start.limits));
-  const auto slow_enough = [&](const std::vector<Vec3>& points) {
-    return greatest_start_speed_mps(points, start.limits) >= needed_mps;
+  const auto slow_enough = [&](const std::vector<Vec3>& joined, const std::vector<Vec3>& plain) {
+    const double greatest_mps = greatest_start_speed_mps(joined, start.limits);
+    return greatest_mps >= committed.speed_mps / (1 + kMayExceed) ||
+           greatest_mps >= greatest_start_speed_mps(plain, start.limits);
   };
   out.points = join_paths(committed.points, path.points, start.max_cut_m, clear, slow_enough);
   out.heading.along_path = !vehicle.lidar;

@@ -33,9 +33,10 @@ std::optional<JoinPoint> after(const std::vector<Vec3>& points, double along_m) 
 
 }  // namespace
 
-std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vector<Vec3>& path,
-                             double max_cut_m, const std::function<bool(const Vec3&, const Vec3&)>& clear,
-                             const std::function<bool(const std::vector<Vec3>&)>& can_be_flown) {
+std::vector<Vec3> join_paths(
+    const std::vector<Vec3>& committed, const std::vector<Vec3>& path, double max_cut_m,
+    const std::function<bool(const Vec3&, const Vec3&)>& clear,
+    const std::function<bool(const std::vector<Vec3>&, const std::vector<Vec3>&)>& can_be_flown) {
   std::vector<Vec3> plain = committed;
   plain.insert(plain.end(), path.begin() + 1, path.end());
   if (committed.size() < 2 || path.size() < 2) return plain;
@@ -65,7 +66,7 @@ std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vect
     std::vector<Vec3> out(committed.begin(), committed.end() - static_cast<std::ptrdiff_t>(begin->next));
     out.insert(out.end(), curve.begin(), curve.end());
     out.insert(out.end(), path.begin() + static_cast<std::ptrdiff_t>(end->next), path.end());
-    if (can_be_flown(out)) return out;
+    if (can_be_flown(out, plain)) return out;
   }
   return plain;
 }

@@ -10,9 +10,11 @@ namespace karst::core {
 
 /// Joins `committed` and `path`, which begins where the former ends. The corner between them is replaced by
 /// the longest of a few parabolas tangent to both for which `clear` holds, whose deviation from the corner
-/// is at most `max_cut_m`, and with which the joined path can be flown. If there is none the corner stays.
-std::vector<Vec3> join_paths(const std::vector<Vec3>& committed, const std::vector<Vec3>& path,
-                             double max_cut_m, const std::function<bool(const Vec3&, const Vec3&)>& clear,
-                             const std::function<bool(const std::vector<Vec3>&)>& can_be_flown);
+/// is at most `max_cut_m`, and for which `can_be_flown` holds of the joined path, and of the plain one with
+/// the corner. If there is none the corner stays.
+std::vector<Vec3> join_paths(
+    const std::vector<Vec3>& committed, const std::vector<Vec3>& path, double max_cut_m,
+    const std::function<bool(const Vec3&, const Vec3&)>& clear,
+    const std::function<bool(const std::vector<Vec3>& joined, const std::vector<Vec3>& plain)>& can_be_flown);
 
 }  // namespace karst::core

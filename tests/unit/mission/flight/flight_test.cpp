@@ -21,6 +21,15 @@ struct IdealFlight {
       flight.control(now);
     }
   }
+  /// For `s` seconds, along a line of 20 m. Where it set out.
+  Vec3 fly_ahead(double s) {
+    const Vec3 from = flight.reference().position;
+    HeadingPlan heading;
+    heading.along_path = false;
+    flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = now, .heading = heading});
+    advance(s);
+    return from;
+  }
 };
 
 TEST(Flight, IsDisarmedUntilItClimbs) {
@@ -70,16 +79,12 @@ TEST(Flight, LandsAtOnceWhateverElseItIsTold) {
   IdealFlight f;
   f.flight.climb(0, 2.0, 0.5);
   f.advance(6);
-  const Vec3 from = f.flight.reference().position;
-  HeadingPlan heading;
-  heading.along_path = false;
-  f.flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = f.now, .heading = heading});
-  f.advance(4);
+  const Vec3 from = f.fly_ahead(4);
   const Vec3 at = f.flight.reference().position;
   const double speed = f.flight.reference().velocity_mps.norm();
   ASSERT_GT(speed, 1.5);
   f.flight.land_now(f.now);
-  f.flight.follow({.points = {at, at + Vec3(0, 20, 0)}, .start = f.now, .heading = heading});
+  f.flight.follow({.points = {at, at + Vec3(0, 20, 0)}, .start = f.now});
   f.advance(1);
   f.flight.brake(f.now);
   f.flight.cap_speed(f.now, 0.5);
@@ -138,11 +143,7 @@ TEST(Flight, BrakesOnThePathAndWithinTheStoppingDistance) {
   IdealFlight f;
   f.flight.climb(0, 0.5, 0.5);
   f.advance(4);
-  const Vec3 from = f.flight.reference().position;
-  HeadingPlan heading;
-  heading.along_path = false;
-  f.flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = f.now, .heading = heading});
-  f.advance(5);
+  const Vec3 from = f.fly_ahead(5);
   const Vec3 at_brake = f.flight.reference().position;
   const double speed = f.flight.reference().velocity_mps.norm();
   ASSERT_GT(speed, 1.5);
@@ -159,11 +160,7 @@ TEST(Flight, TheStretchUntilStopBeginsWhereTheReferenceWillBe) {
   IdealFlight f;
   f.flight.climb(0, 0.5, 0.5);
   f.advance(4);
-  const Vec3 from = f.flight.reference().position;
-  HeadingPlan heading;
-  heading.along_path = false;
-  f.flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = f.now, .heading = heading});
-  f.advance(4);
+  const Vec3 from = f.fly_ahead(4);
   const Flight::CommittedSegment ahead = f.flight.until_stop(f.now + 300 * kMillisecond);
   const Flight::CommittedSegment all = f.flight.until_end(f.now + 300 * kMillisecond);
   f.advance(0.3);
@@ -179,11 +176,7 @@ double strays_m(const VoxelMap& free, double turn_rad, double after_s) {
   IdealFlight f;
   f.flight.climb(0, 0.5, 0.5);
   f.advance(4);
-  const Vec3 from = f.flight.reference().position;
-  HeadingPlan heading;
-  heading.along_path = false;
-  f.flight.follow({.points = {from, from + Vec3(20, 0, 0)}, .start = f.now, .heading = heading});
-  f.advance(after_s);
+  f.fly_ahead(after_s);
   const RouteStart start{
       .at = f.now, .committed = f.flight.until_stop(f.now), .limits = f.flight.limits(), .narrow_places = {}};
   Path path;

@@ -25,7 +25,7 @@ double sharpest_turn_rad(const std::vector<Vec3>& points) {
 }
 
 const auto everywhere = [](const Vec3&, const Vec3&) { return true; };
-const auto always = [](const std::vector<Vec3>&) { return true; };
+const auto always = [](const std::vector<Vec3>&, const std::vector<Vec3>&) { return true; };
 
 TEST(JoinPaths, ACornerBecomesACurveThatPassesItClosely) {
   const std::vector<Vec3> committed = line({0, 0, 0}, {3, 0, 0}),
@@ -65,9 +65,11 @@ TEST(JoinPaths, ACurveWithWhichThePathCannotBeFlownIsNotTaken) {
     return most;
   };
   EXPECT_LT(reaches(join_paths(committed, path, 0.3, everywhere, always)), 2.8);
-  const auto late = [&](const std::vector<Vec3>& points) { return reaches(points) > 2.8; };
+  const auto late = [&](const std::vector<Vec3>& points, const std::vector<Vec3>&) {
+    return reaches(points) > 2.8;
+  };
   EXPECT_GT(reaches(join_paths(committed, path, 0.3, everywhere, late)), 2.8);
-  const auto never = [](const std::vector<Vec3>&) { return false; };
+  const auto never = [](const std::vector<Vec3>&, const std::vector<Vec3>&) { return false; };
   EXPECT_EQ(join_paths(committed, path, 0.3, everywhere, never).size(), committed.size() + path.size() - 1);
 }
 
