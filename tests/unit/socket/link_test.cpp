@@ -95,8 +95,10 @@ core::VehicleDescription description() {
 /// lands and lifts off, and writes down when commands reached it.
 class FakeVehicle final : public core::Vehicle {
  public:
-  explicit FakeVehicle(std::uint64_t seed, std::vector<std::string>* heard = nullptr)
-      : random_(seed), heard_(heard), description_(socket::description()) {}
+  enum class LiftsOff { at_random, when_armed };
+  explicit FakeVehicle(std::uint64_t seed, std::vector<std::string>* heard = nullptr,
+                       LiftsOff lifts_off = LiftsOff::at_random)
+      : random_(seed), heard_(heard), lifts_off_(lifts_off), description_(socket::description()) {}
   core::VehicleDescription description() const override { return description_; }
   void start(core::Executive& e, core::VehicleSink& sink) override {
     executive_ = &e;
@@ -107,8 +109,10 @@ class FakeVehicle final : public core::Vehicle {
   }
   void command(const core::Command& c) override {
     commanded_at_ = executive_->now();
+    const bool arms = c.rates.armed && !armed_;
     armed_ = c.rates.armed;
     if (heard_) heard_->push_back(std::to_string(executive_->now()) + " " + std::to_string(c.rates.thrust_n));
+    if (arms && lifts_off_ == LiftsOff::when_armed) sink_->on_lift_off(executive_->now());
   }
   void finish() override {
     if (heard_) heard_->push_back("finished");
@@ -151,6 +155,7 @@ class FakeVehicle final : public core::Vehicle {
   }
   std::mt19937_64 random_;
   std::vector<std::string>* heard_;
+  LiftsOff lifts_off_;
   core::VehicleDescription description_;
   core::Executive* executive_ = nullptr;
   core::VehicleSink* sink_ = nullptr;
@@ -401,8 +406,11 @@ ServedClient serve(std::function<void(Stream&)> play, const ServeOptions& option
     const Peer peer([&](Listener& listener) {
       auto client = listener.accept(Wait(5000));
       all.served = serve_client(
-          *client, [&](const Hello&) { return std::make_unique<FakeVehicle>(1, &all.vehicle); }, options,
-          kGoOn);
+          *client,
+          [&](const Hello&) {
+            return std::make_unique<FakeVehicle>(1, &all.vehicle, FakeVehicle::LiftsOff::when_armed);
+          },
+          options, kGoOn);
     });
     Stream stream = connect_to(peer.address(), Wait(5000), kMaxToCoreBytes);
     try {
@@ -412,25 +420,27 @@ ServedClient serve(std::function<void(Stream&)> play, const ServeOptions& option
   }
   return all;
 }
-/// Waits for an answer's end.
-void wait_for_done(Stream& stream) {
+/// Waits for a message of type M; the vehicle goes on meanwhile.
+template <class M>
+void wait_for(Stream& stream) {
   for (;;) {
     while (const auto frame = stream.next()) {
-      if (frame->type == kType<Done>.id) return;
       if (frame->type == kType<Pause>.id) say(stream, Resume{});
+      if (frame->type == kType<M>.id) return;
     }
-    if (!stream.receive(Wait(5000))) throw LinkError("no done");
+    if (!stream.receive(Wait(5000))) throw LinkError("the vehicle has not answered");
   }
 }
-void greet_and_arm(Stream& stream) {
+void greet_and_lift_off(Stream& stream) {
   say(stream, Hello{});
   say(stream, Start{});
-  wait_for_done(stream);
+  wait_for<Done>(stream);
   say(stream, socket::Run{0, 0});
-  wait_for_done(stream);
+  wait_for<Done>(stream);
   core::Command c;
   c.rates.armed = true;
   say(stream, c);
+  wait_for<Pause>(stream);  // by which the vehicle says that it has lifted off
 }
 
 TEST(BadClient, IsRefusedWithTheReason) {
@@ -458,28 +468,28 @@ TEST(BadClient, IsRefusedWithTheReason) {
 }
 
 TEST(BadClient, InFlightLeavesAVehicleThatComesDown) {
-  const auto leaves = serve([](Stream& s) { greet_and_arm(s); });
+  const auto leaves = serve([](Stream& s) { greet_and_lift_off(s); });
   EXPECT_TRUE(leaves.served.flew);
   EXPECT_EQ(leaves.served.ending, "the other side closed the connection");
   EXPECT_TRUE(leaves.came_down());
   EXPECT_EQ(leaves.vehicle.back(), "finished");
 
   const auto garbage = serve([](Stream& s) {
-    greet_and_arm(s);
+    greet_and_lift_off(s);
     say_bytes(s, std::string(64, '\xff'));
   });
   EXPECT_EQ(garbage.served.ending, "this is no message of the protocol: type 65535 with 4294967295 bytes");
   EXPECT_TRUE(garbage.came_down());
 
   const auto cut = serve([](Stream& s) {
-    greet_and_arm(s);
+    greet_and_lift_off(s);
     say_bytes(s, std::string("\x0c\0\0\0\x03\0\0\0\x01", 9));
   });
   EXPECT_EQ(cut.served.ending, "the other side closed the connection within a message");
   EXPECT_TRUE(cut.came_down());
 
   const auto out_of_order = serve([](Stream& s) {
-    greet_and_arm(s);
+    greet_and_lift_off(s);
     say(s, socket::Run{77, kMillisecond});
     while (s.receive(Wait(300))) {
     }
@@ -491,7 +501,7 @@ TEST(BadClient, InFlightLeavesAVehicleThatComesDown) {
   hasty.lockstep_patience = Wait(50);
   const auto silent = serve(
       [](Stream& s) {
-        greet_and_arm(s);
+        greet_and_lift_off(s);
         std::this_thread::sleep_for(Wait(400));
       },
       hasty);
@@ -501,7 +511,7 @@ TEST(BadClient, InFlightLeavesAVehicleThatComesDown) {
 
 TEST(BadClient, WhoseCommandIsNoNumberIsNotObeyed) {
   const auto all = serve([](Stream& s) {
-    greet_and_arm(s);
+    greet_and_lift_off(s);
     core::Command c;
     c.rates.thrust_n = std::nan("");
     say(s, c);
@@ -668,7 +678,7 @@ TEST(RealTime, AVehicleWhoseClientIsGoneComesDown) {
     hello.clock = FlightClock::real_time;
     say(s, hello);
     say(s, Start{});
-    wait_for_done(s);
+    wait_for<Done>(s);
     core::Command c;
     c.rates.armed = true;
     say(s, c);
