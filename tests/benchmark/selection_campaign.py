@@ -7,9 +7,11 @@
     python3 tests/benchmark/selection_campaign.py learn  FOLDER --out experience.info
     karst select --leave-one-out --results experience.info
 
-The flights go in rounds. A round takes one cave of each kind through all conditions (vehicle and battery), by all
-contestants, with one seed. Whenever it is stopped, all kinds and conditions have been flown equally often, but for the
-round under way. Goals cost no flights: they are figures of the same flights.
+The flights go in rounds. A round flies one cave of each kind by all contestants with one seed, each cave under one
+condition (vehicle and battery), so that the conditions take turns over caves and kinds. After six rounds each of the 42
+caves has been flown under one condition, after twelve under two, and so on. Whenever it is stopped, the kinds have been
+flown equally often and the conditions nearly so, but for the round under way. Goals cost no flights: they are figures
+of the same flights.
 
 Tuned parameters: put what `karst tune` wrote as preset.info into FOLDER/tuned as NAME.info. They are appended as
 contestants, to rounds that were flown before as well.
@@ -65,9 +67,10 @@ WHOLE = {"loops", "domes", "shafts", "chimneys"}
 TRIES = 12
 
 VEHICLES = ["lidar_uav", "camera_uav"]
-BATTERIES = ["4 min", "8 min"]
+BATTERIES = ["3 min", "6 min"]
+# All policies but beyond_survey: no cave here has a survey.
 POLICIES = ["nearest_frontier", "highest_frontier", "lateral_frontier", "unknown_ratio", "information_gain",
-            "viewpoint_tour", "deep_cave", "surface_coverage", "beyond_survey"]
+            "viewpoint_tour", "deep_cave", "surface_coverage"]
 OBJECTS = 20
 
 
@@ -144,11 +147,20 @@ def conditions(args):
 
 
 def rounds_of(args):
-    """(number of caves, number of seeds) of each round: all caves once before any cave twice."""
-    count = len(caves_of(args.folder))
-    batch = len({row["kind"] for row in caves_of(args.folder)}) or 1
-    batches = [min(count, i + batch) for i in range(0, count, batch)]
-    return [(n, 1) for n in batches] + [(count, seed) for seed in range(2, args.seeds + 1)]
+    """The flights of each round on top of those before: ({name of condition: caves}, seeds)."""
+    names = [name for name, _, _ in conditions(args)]
+    kinds = list(KINDS)
+    rows = caves_of(args.folder)
+    numbers = sorted({int(row["cave"].removeprefix(row["kind"])) for row in rows})
+    flown = {name: [] for name in names}
+    rounds = []
+    for turn in range(len(names)):
+        for number in numbers:
+            for row in rows:
+                if row["cave"] == f"{row['kind']}{number}":
+                    flown[names[(turn + number + kinds.index(row["kind"])) % len(names)]].append(row["cave"])
+            rounds.append(({name: list(caves) for name, caves in flown.items()}, 1))
+    return rounds + [(flown, seed) for seed in range(2, args.seeds + 1)]
 
 
 def contestants(args):
@@ -161,37 +173,38 @@ def contestants(args):
 
 
 def write_campaign(args, name, vehicle, battery, caves, seeds):
-    rows = caves_of(args.folder)[:caves]
     text = "\n".join([
         f"name {name}", "profile campaign", f'flight_time "{battery}"', 'trial_timeout "1 h"',
         f"seeds {seeds}", "metric coverage_auc",
         "settings {", f'  simulator {{ vehicle {vehicle}  battery_minutes "{battery}"  '
         f'rgb {{ fitted true }}  objects {{ count {OBJECTS} }} }}', "}",
-        *contestants(args), *(f"cave {{ file caves/{row['cave']}.info }}" for row in rows), ""])
+        *contestants(args), *(f"cave {{ file caves/{cave}.info }}" for cave in caves), ""])
     file = args.folder / f"{name}.info"
     file.write_text(text)
     return file
 
 
 def done_file(args, name):
-    return args.folder / f"{name}.rounds"
+    return args.folder / f"{name}.flown"
 
 
-def done_rounds(args, name):
-    """Rounds that were flown whole, with these contestants."""
+def flown_whole(args, name, caves, seeds):
+    """Whether these contestants have flown all of it."""
     file = done_file(args, name)
     if not file.exists():
-        return 0
+        return False
     state = json.loads(file.read_text())
-    return state["rounds"] if state["contestants"] == contestants(args) else 0
+    return (state["contestants"] == contestants(args) and set(caves) <= set(state["caves"])
+            and seeds <= state["seeds"])
 
 
 def fly(args):
-    for number, (caves, seeds) in enumerate(rounds_of(args)[:args.rounds], 1):
+    for number, (flights, seeds) in enumerate(rounds_of(args)[:args.rounds], 1):
         for name, vehicle, battery in conditions(args):
-            if done_rounds(args, name) >= number:
+            caves = flights[name]
+            if flown_whole(args, name, caves, seeds):
                 continue
-            print(f"round {number}: {name}, {caves} caves, {seeds} seeds", flush=True)
+            print(f"round {number}: {name}, {len(caves)} caves, {seeds} seeds", flush=True)
             campaign = write_campaign(args, name, vehicle, battery, caves, seeds)
             command = ["compare", str(campaign), "--out", str(args.folder / name), "--keep", "figures", "--quiet"]
             if args.any_binary:
@@ -199,21 +212,22 @@ def fly(args):
             if args.jobs:
                 command += ["--jobs", str(args.jobs)]
             run(args, command, stdout=open(args.folder / f"{name}.txt", "w"))
-            done_file(args, name).write_text(json.dumps({"rounds": number, "contestants": contestants(args)}))
+            done_file(args, name).write_text(
+                json.dumps({"contestants": contestants(args), "caves": caves, "seeds": seeds}))
 
 
 def plan(args):
-    rounds, per_cave = rounds_of(args), len(conditions(args)) * len(contestants(args))
-    seconds = sum(60 * float(battery.split()[0]) for _, _, battery in conditions(args)) * len(contestants(args))
-    flown = min((done_rounds(args, name) for name, _, _ in conditions(args)), default=0)
-    before = 0
-    for number, (caves, seeds) in enumerate(rounds, 1):
-        flights = caves * seeds * per_cave
-        print(f"round {number}: {caves} caves, {seeds} seeds: {flights - before} flights, at most "
-              f"{(flights - before) / per_cave * seconds / 3600:.1f} flight hours"
-              f"{', flown' if number <= flown else ''}")
-        before = flights
-    print(f"{before} flights in all: {len(conditions(args))} conditions, {len(contestants(args))} contestants")
+    minutes = {name: float(battery.split()[0]) for name, _, battery in conditions(args)}
+    before_flights, before_hours = 0, 0
+    for number, (caves, seeds) in enumerate(rounds_of(args), 1):
+        per_cave = seeds * len(contestants(args))
+        flights = sum(len(c) for c in caves.values()) * per_cave
+        hours = sum(len(c) * minutes[name] for name, c in caves.items()) * per_cave / 60
+        flown = all(flown_whole(args, name, c, seeds) for name, c in caves.items())
+        print(f"round {number}: {flights - before_flights} flights, at most {hours - before_hours:.1f} flight hours"
+              f"{', flown' if flown else ''}")
+        before_flights, before_hours = flights, hours
+    print(f"{before_flights} flights in all: {len(conditions(args))} conditions, {len(contestants(args))} contestants")
 
 
 def learn(args):
