@@ -8,6 +8,7 @@
 #include "sdk/campaign/run/collect.h"
 #include "sdk/campaign/run/executor.h"
 #include "sdk/campaign/run/slurm.h"
+#include "sdk/campaign/run/slurm_batch.h"
 
 namespace karst::campaign {
 namespace {
@@ -112,10 +113,11 @@ class Binaries {
 bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& options,
          const Binaries& binaries, const ExecutorEvents& events) {
   if (options.executor == Where::slurm)
-    return run_on_slurm(jobs,
-                        {options.folder, options.karst, plan.name, plan.trial_timeout_s,
-                         expected_trial_s(plan), options.batch, options.sbatch, options.stop},
-                        events);
+    return run_on_slurm(
+        jobs,
+        {options.folder, options.karst, plan.name, plan.trial_timeout_s, expected_trial_s(plan),
+         options.batch, options.sbatch, SlurmOptions{}.late_s, options.stop},
+        events);
   std::error_code ignored;
   fs::remove_all(options.folder / "flying", ignored);  // left by a killed campaign
   ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};
@@ -188,6 +190,8 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
     progress.flying = flying;
     tell(nullptr);
   };
+  events.say = options.say;
+  events.queue = [&](const std::string& text) { progress.queue = text; };
   const bool done = fly(plan, jobs, options, binaries, events);
   fs::remove_all(options.folder / "flying", ignored);
   return done;
