@@ -112,12 +112,18 @@ class Binaries {
 
 bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& options,
          const Binaries& binaries, const ExecutorEvents& events) {
-  if (options.executor == Where::slurm)
-    return run_on_slurm(
-        jobs,
-        {options.folder, options.karst, plan.name, plan.trial_timeout_s, expected_trial_s(plan),
-         options.batch, options.sbatch, SlurmOptions{}.late_s, options.stop},
-        events);
+  if (options.executor == Where::slurm) {
+    SlurmOptions how;
+    how.folder = options.folder;
+    how.karst = options.karst;
+    how.name = plan.name;
+    how.timeout_s = plan.trial_timeout_s;
+    how.expected_trial_s = expected_trial_s(plan);
+    how.batch = options.batch;
+    how.sbatch = options.sbatch;
+    how.stop = options.stop;
+    return run_on_slurm(jobs, how, events);
+  }
   std::error_code ignored;
   fs::remove_all(options.folder / "flying", ignored);  // left by a killed campaign
   ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};

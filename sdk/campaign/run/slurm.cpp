@@ -27,9 +27,8 @@ using Clock = std::chrono::steady_clock;
 constexpr double kTask_s = 10;               // least duration of a task
 constexpr std::size_t kTasksOfArray = 1000;  // Slurm's default MaxArraySize is 1001
 constexpr std::size_t kTasksWaiting = 500;   // so many at least: nodes that become free find one
-constexpr auto kPoll = std::chrono::milliseconds(500);
-constexpr auto kQueuePoll = std::chrono::seconds(3);
-constexpr int kRest = 20;  // looking takes at most a twentieth of the time, however slow disk or queue are
+constexpr int kLooksAPoll = 6;               // the queue is asked less often than the folder by this factor
+constexpr int kRest = 20;  // asking takes at most a twentieth of the time, however slow the controller is
 constexpr auto kSilence = std::chrono::seconds(30);   // then it is said why nothing runs
 constexpr auto kTryAgain = std::chrono::seconds(30);  // to submit
 
@@ -80,7 +79,7 @@ class Submission {
       if (tasks_.has_todo() && tasks_.waiting() < kTasksWaiting && Clock::now() >= next_submission_) submit();
       if (tasks_.all()) return true;
       tell();
-      std::this_thread::sleep_for(kPoll);
+      std::this_thread::sleep_for(std::chrono::duration<double>(o_.look_s));
     }
   }
   void cancel() {
@@ -93,7 +92,7 @@ class Submission {
     const auto begin = Clock::now();
     const std::optional<TaskStates> states = ask_queue(tasks_.arrays());
     const auto end = Clock::now();
-    next_poll_ = end + std::max<Clock::duration>(kQueuePoll, kRest * (end - begin));
+    next_poll_ = end + std::max<Clock::duration>(queue_poll(), kRest * (end - begin));
     if (!states && !is_mute_) say("squeue does not answer; waits for it");
     is_mute_ = !states;
     if (states) tasks_.take(*states);
@@ -145,7 +144,7 @@ class Submission {
     }
     tasks_.submitted(tasks);
     say("array " + array + ": " + counted(tasks.size(), "task") + " with " + counted(trials, "trial"));
-    next_poll_ = std::max(next_poll_, Clock::now() + kQueuePoll);
+    next_poll_ = std::max(next_poll_, Clock::now() + queue_poll());
     last_running_ = Clock::now();
   }
 
@@ -178,6 +177,10 @@ class Submission {
         (why.empty() ? "" : "; Slurm's reason: " + why));
   }
 
+  Clock::duration queue_poll() const {
+    return std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(kLooksAPoll * o_.look_s));
+  }
   void say(const std::string& text) const {
     if (events_.say) events_.say("slurm: " + text);
   }
@@ -190,7 +193,8 @@ class Submission {
   std::size_t submissions_ = 0;
   bool is_mute_ = false;
   std::optional<std::string> said_why_;
-  Clock::time_point next_poll_ = Clock::now() + kQueuePoll, next_submission_{}, last_running_ = Clock::now();
+  Clock::time_point next_poll_ = Clock::now() + queue_poll(), next_submission_{},
+                    last_running_ = Clock::now();
 };
 
 }  // namespace

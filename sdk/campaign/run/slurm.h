@@ -18,7 +18,8 @@ struct SlurmOptions {
   double expected_trial_s = 10;     // wall clock; determines the batch size
   std::size_t batch = 0;            // trials per task; 0: batch_size(expected_trial_s)
   std::vector<std::string> sbatch;  // additional options of sbatch, such as "--partition=long"
-  double late_s = 90;  // a shared disk may show a finished trial that much later: NFS caches 60 s
+  double late_s = 90;   // a shared disk may show a finished trial that much later: NFS caches 60 s
+  double look_s = 0.5;  // between looks at the folder; the queue is asked six times less often
   const std::atomic<bool>* stop = nullptr;
 };
 

@@ -114,8 +114,7 @@ void SlurmTasks::settle(bool states_are_new) {
 }
 
 void SlurmTasks::give_up(SlurmTask& task) {
-  if (task.last.state ==
-      "COMPLETED") {  // then they have been written, and this machine does not see them yet
+  if (task.last.state == "COMPLETED") {  // then this machine does not see them yet
     if (task.over == Clock::time_point{}) task.over = Clock::now();
     if (std::chrono::duration<double>(Clock::now() - task.over).count() < late_s_) return;
   }

@@ -80,6 +80,7 @@ TEST(Slurm, ATrialThatIsLostTwiceIsAFailedOneAndTakesNoneWithIt) {
   options.karst = "/bin/karst";
   options.name = "lost";
   options.batch = 3;
+  options.look_s = 0.05;
   std::vector<std::size_t> ended;
   std::vector<ProcessEnd> ends(3);
   ASSERT_TRUE(run_on_slurm(jobs, options,
@@ -126,6 +127,7 @@ class OnStandIn {
     options.karst = "/bin/karst";
     options.name = "lost";
     options.batch = 1;
+    options.look_s = 0.05;
   }
   void fly_trial(std::size_t i) const {
     fs::create_directories(dir / "part");
