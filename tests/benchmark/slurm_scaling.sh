@@ -181,11 +181,10 @@ part_nodes() {
   for nodes in 1 2 4 8; do throughput $nodes 1 $((12 * nodes)) 5 --batch 2; done
 }
 
-part_cores() { # ideally a minute each
+part_cores() { # simulated cores; ideally a minute each
   throughput 8 8 192 20 --batch 1
   throughput 8 32 768 20 --batch 1
   throughput 8 125 3000 20 --batch 1
-  throughput 8 125 3000 20 --batch 3
   throughput 8 125 3000 20 --batch 75 --sbatch=--cpus-per-task=25
 }
 

@@ -92,4 +92,7 @@ CONF
   return 1
 }
 
-lose_node() { kill -9 "${cluster_nodes[$1]}"; }
+lose_node() {
+  kill -9 "${cluster_nodes[$1]}"
+  wait "${cluster_nodes[$1]}" 2>/dev/null || true
+}
