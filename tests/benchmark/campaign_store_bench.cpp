@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -62,19 +63,25 @@ StoredTrial trial_of(std::size_t i) {
   return t;
 }
 
-void measure(const fs::path& folder, std::size_t trials) {
+void measure(const fs::path& folder, std::size_t trials, std::size_t at_once) {
   const fs::path file = folder / ("campaign_store_bench-" + std::to_string(getpid()) + ".sqlite");
   fs::remove(file);
   {
     Store store = Store::create(file, head_of(trials));
     const double cpu = cpu_s();
     const auto begin = std::chrono::steady_clock::now();
-    for (std::size_t i = 0; i < trials; ++i) store.add(trial_of(i));
+    for (std::size_t i = 0; i < trials; i += at_once) {
+      std::vector<StoredTrial> some;
+      for (std::size_t k = i; k < std::min(i + at_once, trials); ++k) some.push_back(trial_of(k));
+      store.add(some);
+    }
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const auto n = static_cast<double>(trials);
-    std::printf("%-12s %6zu trials  %8.1f rows/s  %6.2f ms a row  %6.2f ms of them CPU  %5.1f kB a row\n",
-                folder.c_str(), trials, n / wall, 1e3 * wall / n, 1e3 * (cpu_s() - cpu) / n,
-                static_cast<double>(fs::file_size(file)) / n / 1e3);
+    std::printf(
+        "%-12s %6zu trials, %3zu at once  %8.1f rows/s  %6.2f ms a row  %6.2f ms of them CPU  %5.1f kB a "
+        "row\n",
+        folder.c_str(), trials, at_once, n / wall, 1e3 * wall / n, 1e3 * (cpu_s() - cpu) / n,
+        static_cast<double>(fs::file_size(file)) / n / 1e3);
   }
   fs::remove(file);
 }
@@ -89,5 +96,6 @@ int main(int argc, char** argv) {
   std::vector<std::size_t> sizes;
   for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
   if (sizes.empty()) sizes = {1000, 10000};
-  for (const std::size_t trials : sizes) measure(argv[1], trials);
+  for (const std::size_t trials : sizes)
+    for (const std::size_t at_once : {1, 10, 100}) measure(argv[1], trials, at_once);
 }
