@@ -92,12 +92,20 @@ void CampaignProgress::show(const Plan& plan, const Progress& p) {
       found += text(" %s %.1f %%", core::printable(plan.contestants[i].name).c_str(),
                     100 * tallies_[i].coverage / tallies_[i].trials);
   std::string line = bar(p) + text(" %zu/%zu · %s", p.finished, p.trials, time_left(p).c_str()) + pace +
-                     (p.failed ? text(" · %zu failed", p.failed) : "");
+                     (p.failed ? text(" · %zu failed", p.failed) : "") +
+                     (p.queue.empty() ? "" : " · " + core::printable(p.queue));
   const std::size_t width = terminal_columns(stderr);
   std::fprintf(stderr, "%s\r\033[K%s\n\033[K%s", drawn_ ? "\033[A" : "", line.substr(0, width).c_str(),
                found.substr(0, width - 1).c_str());
   std::fflush(stderr);
   drawn_ = true;
+}
+
+void CampaignProgress::say(const std::string& text) {
+  if (quiet_) return;
+  if (drawn_) std::fputs("\r\033[K\033[A\033[K", stderr);
+  drawn_ = false;
+  print_error("karst: %s\n", text.c_str());
 }
 
 }  // namespace karst::tools

@@ -1,6 +1,7 @@
 // Progress of a campaign on standard error: on a terminal two lines that are rewritten, otherwise one line
 // for each finished trial.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "sdk/campaign/run/run_campaign.h"
@@ -15,6 +16,8 @@ class CampaignProgress {
   CampaignProgress(const CampaignProgress&) = delete;
   CampaignProgress& operator=(const CampaignProgress&) = delete;
   void show(const campaign::Plan& plan, const campaign::Progress& progress);
+  /// A line that stays, above the progress.
+  void say(const std::string& text);
 
  private:
   struct Tally {

@@ -20,7 +20,7 @@
 #include "sdk/campaign/report/campaign_page.h"
 #include "sdk/campaign/report/verdict_json.h"
 #include "sdk/campaign/run/run_campaign.h"
-#include "sdk/campaign/run/slurm.h"
+#include "sdk/campaign/run/slurm_batch.h"
 #include "sdk/campaign/store/export.h"
 #include "sdk/campaign/verdict/verdict.h"
 #include "sdk/evaluation/record/whole_file.h"
@@ -190,6 +190,7 @@ int compare(const CompareArguments& args) {
       }
       progress.show(plan, p);
     };
+    options.say = [&](const std::string& text) { progress.say(text); };
     done = campaign::run_campaign(c, options);
   }
   if (!done) {

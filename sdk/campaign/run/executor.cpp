@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 #include <sstream>
 #include <thread>
 
@@ -70,10 +71,11 @@ void refuse_starved(const fs::path& folder) {
 
 Flying start(const TrialJob& job, std::size_t index, const ExecutorOptions& options) {
   refuse_full_disk(options.flying);
+  // In containers, two machines may have the same name and two processes the same number.
   const fs::path folder =
-      options.flying / (machine_name() + "-" + std::to_string(getpid()) + "-" + std::to_string(index));
+      options.flying / (machine_name() + "-" + std::to_string(getpid()) + "-" + std::to_string(index) + "-" +
+                        std::to_string(std::random_device{}()));
   std::error_code error;
-  fs::remove_all(folder, error);
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string(), "", "cannot be made: " + error.message());
   std::vector<std::string> argv = job.command;
@@ -90,9 +92,13 @@ void finish_trial(const Flying& f, const TrialJob& job, const ProcessEnd& end,
   std::error_code error;
   write_note(f.folder, {end, machine_name(), job.identity});
   fs::create_directories(job.run_dir.parent_path(), error);
-  fs::remove_all(job.run_dir, error);
-  fs::rename(f.folder, job.run_dir, error);
-  if (error) throw InputError(job.run_dir.string(), "", "cannot be made: " + error.message());
+  if (!is_flown(job)) {
+    fs::remove_all(job.run_dir, error);
+    fs::rename(f.folder, job.run_dir, error);
+    if (!error) return;
+    if (!is_flown(job)) throw InputError(job.run_dir.string(), "", "cannot be made: " + error.message());
+  }
+  fs::remove_all(f.folder, error);  // a task that was taken for lost has flown it meanwhile
 }
 
 /// How a trial ended, or none if it still runs.
@@ -175,6 +181,14 @@ TrialNote read_note(const fs::path& run_dir) {
             json.at("identity")};
   } catch (const nlohmann::json::exception&) {
     throw InputError(file.string(), "", "is no note of a trial");
+  }
+}
+
+bool is_flown(const TrialJob& job) {
+  try {
+    return fs::exists(job.run_dir) && read_note(job.run_dir).identity == job.identity;
+  } catch (const InputError&) {
+    return false;
   }
 }
 

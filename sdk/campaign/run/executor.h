@@ -1,5 +1,6 @@
 // Flies trials as processes on this machine, at most one per core: each in a folder that gets its final name
-// only after the trial has ended, so that a named folder is always complete.
+// only after the trial has ended, so that a named folder is always complete. If another machine has flown the
+// same trial meanwhile, its folder stays: nobody sees a folder change.
 #pragma once
 #include <atomic>
 #include <filesystem>
@@ -32,6 +33,8 @@ struct ExecutorOptions {
 struct ExecutorEvents {
   std::function<void(std::size_t job, const ProcessEnd& end)> ended;
   std::function<void(std::size_t flying)> tick;
+  std::function<void(const std::string& text)> say = {};    // what the user should know, such as a lost node
+  std::function<void(const std::string& text)> queue = {};  // how many tasks run and wait, before each tick
 };
 
 /// Runs all jobs in order; returns false if stopped before the last one ended: running trials are discarded.
@@ -47,6 +50,8 @@ struct TrialNote {
 void write_note(const std::filesystem::path& run_dir, const TrialNote& note);
 /// Throws core::InputError if the file is missing or cannot be read.
 TrialNote read_note(const std::filesystem::path& run_dir);
+/// Whether exactly this trial has been flown.
+bool is_flown(const TrialJob& job);
 
 constexpr const char* kLogFile = "output.txt";  // the trial's output
 

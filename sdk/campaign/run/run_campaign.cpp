@@ -8,12 +8,15 @@
 #include "sdk/campaign/run/collect.h"
 #include "sdk/campaign/run/executor.h"
 #include "sdk/campaign/run/slurm.h"
+#include "sdk/campaign/run/slurm_batch.h"
 
 namespace karst::campaign {
 namespace {
 
 namespace fs = std::filesystem;
 using core::InputError;
+
+constexpr std::size_t kTrialsStoredAtOnce = 100;
 
 std::vector<std::string> dropped(Keep keep) {
   std::vector<std::string> files;
@@ -111,11 +114,18 @@ class Binaries {
 
 bool fly(const Plan& plan, const std::vector<TrialJob>& jobs, const RunOptions& options,
          const Binaries& binaries, const ExecutorEvents& events) {
-  if (options.executor == Where::slurm)
-    return run_on_slurm(jobs,
-                        {options.folder, options.karst, plan.name, plan.trial_timeout_s,
-                         expected_trial_s(plan), options.batch, options.sbatch, options.stop},
-                        events);
+  if (options.executor == Where::slurm) {
+    SlurmOptions how;
+    how.folder = options.folder;
+    how.karst = options.karst;
+    how.name = plan.name;
+    how.timeout_s = plan.trial_timeout_s;
+    how.expected_trial_s = expected_trial_s(plan);
+    how.batch = options.batch;
+    how.sbatch = options.sbatch;
+    how.stop = options.stop;
+    return run_on_slurm(jobs, how, events);
+  }
   std::error_code ignored;
   fs::remove_all(options.folder / "flying", ignored);  // left by a killed campaign
   ExecutorOptions how{options.jobs, plan.trial_timeout_s, options.folder / "flying", {}, options.stop};
@@ -151,11 +161,20 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
     if (options.progress) options.progress(plan, progress);
   };
   std::error_code ignored;
+  // Several that end at about the same time are one transaction. What is dropped of a trial is dropped once
+  // it is stored: a campaign that dies before that collects the trial again.
+  std::vector<StoredTrial> collected;
+  const auto store_collected = [&] {
+    store.add(collected);
+    for (const StoredTrial& trial : collected)
+      for (const fs::path& run_dir : run_dirs_in(options.folder / trial.result.run_dir))
+        for (const std::string& file : dropped(options.keep)) fs::remove(run_dir / file, ignored);
+    collected.clear();
+  };
   const auto take = [&](const TrialKey& key) {
     StoredTrial trial = collect(plan, key, options.folder);
-    store.add(trial);
-    for (const fs::path& run_dir : run_dirs_in(options.folder / trial.result.run_dir))
-      for (const std::string& file : dropped(options.keep)) fs::remove(run_dir / file, ignored);
+    collected.push_back(trial);
+    if (collected.size() >= kTrialsStoredAtOnce) store_collected();
     ++progress.finished;
     progress.failed += trial.result.failed;
     return trial;
@@ -174,6 +193,7 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
       jobs.push_back(job);
     }
   }
+  store_collected();
   tell(nullptr);
 
   ExecutorEvents events;
@@ -185,10 +205,23 @@ bool run_campaign(const std::optional<Campaign>& campaign, const RunOptions& giv
     tell(&trial);
   };
   events.tick = [&](std::size_t flying) {
+    store_collected();
     progress.flying = flying;
     tell(nullptr);
   };
-  const bool done = fly(plan, jobs, options, binaries, events);
+  events.say = options.say;
+  events.queue = [&](const std::string& text) { progress.queue = text; };
+  bool done = false;
+  try {
+    done = fly(plan, jobs, options, binaries, events);
+  } catch (...) {  // such as a changed binary: what was collected before it counts
+    try {
+      store_collected();
+    } catch (const InputError&) {  // the first reason is told
+    }
+    throw;
+  }
+  store_collected();
   fs::remove_all(options.folder / "flying", ignored);
   return done;
 }

@@ -40,6 +40,7 @@ struct Progress {
   std::size_t flying = 0;
   double wall_s = 0;                  // since this start
   double simulated_s = 0;             // flown since this start
+  std::string queue;                  // of Slurm: how many tasks run and wait
   const StoredTrial* last = nullptr;  // the trial that has just ended; null at a tick
 };
 
@@ -54,6 +55,7 @@ struct RunOptions {
   AcceptedBinaries binaries = AcceptedBinaries::same;
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const Plan&, const Progress&)> progress;
+  std::function<void(const std::string&)> say;  // what happens on Slurm, such as a lost node
 };
 
 /// Without `campaign` it resumes the one in the folder. Returns false if it was stopped. All errors of the

@@ -3,170 +3,199 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
+#include <cstdlib>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 #include <thread>
 
+#include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
 #include "core_stack/common/input_file.h"
-#include "core_stack/common/json_text.h"
-#include "core_stack/common/program_in_path.h"
+#include "sdk/campaign/run/slurm_batch.h"
+#include "sdk/campaign/run/slurm_tasks.h"
 #include "sdk/evaluation/record/whole_file.h"
-#include "sdk/host/isolation/process.h"
 
 namespace karst::campaign {
 namespace {
 
 namespace fs = std::filesystem;
+using core::counted;
 using core::InputError;
-using host::ProcessOutput;
-using host::run_process;
-using nlohmann::json;
+using Clock = std::chrono::steady_clock;
 
 constexpr double kTask_s = 10;               // least duration of a task
 constexpr std::size_t kTasksOfArray = 1000;  // Slurm's default MaxArraySize is 1001
-constexpr int kAttempts = 2;
-constexpr double kCommand_s = 120;  // time limit of a Slurm command
-constexpr double kEvaluationLimit_s = 1800;
-constexpr auto kPoll = std::chrono::milliseconds(500);
-constexpr int kPollsOfQueue = 6;  // the queue is polled less often than the folder by this factor
+constexpr std::size_t kTasksWaiting = 500;   // so many at least: nodes that become free find one
+constexpr int kLooksAPoll = 6;               // the queue is asked less often than the folder by this factor
+constexpr int kRest = 20;  // asking takes at most a twentieth of the time, however slow the controller is
+constexpr auto kSilence = std::chrono::seconds(30);   // then it is said why nothing runs
+constexpr auto kTryAgain = std::chrono::seconds(30);  // to submit
 
-std::string slurm_program(const std::string& name) {
-  if (auto program = core::program_in_path(name)) return *program;
-  throw InputError("slurm", name, "is not installed here, or not in PATH");
+fs::path arrays_file(const SlurmOptions& o) { return o.folder / "slurm" / "array"; }
+fs::path batches(const SlurmOptions& o) { return o.folder / "slurm" / "batches"; }
+
+std::set<std::string> left_behind(const SlurmOptions& o) {
+  std::set<std::string> arrays;
+  if (!fs::exists(arrays_file(o))) return arrays;
+  std::ifstream in = core::open_input(arrays_file(o), core::kMaxTextFileBytes);
+  for (std::string array; in >> array;) arrays.insert(array);
+  return arrays;
 }
 
-/// The output of a Slurm command; throws with its message if the command fails.
-std::string ask(std::vector<std::string> argv) {
-  const std::string name = argv[0];
-  argv[0] = slurm_program(name);
-  const ProcessOutput output = run_process(argv, kCommand_s);
-  std::string said = output.out;
-  while (!said.empty() && said.back() == '\n') said.pop_back();
-  if (output.end.hung || output.end.signal || output.end.exit_code)
-    throw InputError("slurm", name, describe(output.end) + (said.empty() ? "" : ": " + said));
-  return said;
-}
-
-/// Whether any task of an array waits or runs. An array unknown to Slurm has ended.
-bool is_active(const std::string& array) {
-  const ProcessOutput queue =
-      run_process({slurm_program("squeue"), "--noheader", "--jobs", array, "--format", "%T"}, kCommand_s);
-  if (queue.end.exit_code != 0 && queue.out.find("Invalid job id") == std::string::npos)
-    return true;  // the controller does not answer: it may still run
-  return queue.end.exit_code == 0 && !queue.out.empty();
-}
-
-fs::path array_file(const SlurmOptions& o) { return o.folder / "slurm" / "array"; }
-
-void cancel(const std::string& array) {
-  ask({"scancel", array});
-  while (is_active(array)) std::this_thread::sleep_for(kPoll);
-}
-
-/// Cancels an array that was left by a killed campaign.
-void cancel_left_behind(const SlurmOptions& o) {
-  std::string array;
-  if (fs::exists(array_file(o))) core::open_input(array_file(o), core::kMaxTextFileBytes) >> array;
-  if (!array.empty()) cancel(array);
+void note(const std::set<std::string>& arrays, const SlurmOptions& o) {
   std::error_code ignored;
-  fs::remove(array_file(o), ignored);
+  if (arrays.empty()) fs::remove(arrays_file(o), ignored);
+  std::string text;
+  for (const std::string& array : arrays) text += array + "\n";
+  if (!arrays.empty()) evaluation::write_whole_file(arrays_file(o), text);
 }
 
-json batch_json(const std::vector<TrialJob>& jobs, const SlurmOptions& o) {
-  json batch{{"schema", "karst.batch/1"},
-             {"karst", o.karst.string()},
-             {"timeout_s", o.timeout_s},
-             {"flying", (o.folder / "flying").string()},
-             {"trials", json::array()}};
-  for (const TrialJob& j : jobs)
-    batch["trials"].push_back(
-        {{"command", j.command}, {"run_dir", j.run_dir.string()}, {"identity", j.identity}});
-  return batch;
+/// The CPUs of a task: `--cpus-per-task` among the further options of sbatch.
+std::size_t cpus_of_task(const SlurmOptions& o) {
+  std::size_t cpus = 1;
+  for (const std::string& option : o.sbatch)
+    if (option.starts_with("--cpus-per-task="))
+      cpus = std::max<std::size_t>(1, std::strtoull(option.c_str() + option.find('=') + 1, nullptr, 10));
+  return cpus;
 }
 
-/// Writes the batches into a folder of their own and submits one array for them; returns its number.
-std::string submit(const std::vector<TrialJob>& jobs, std::size_t batch, const SlurmOptions& o) {
-  const fs::path dir = o.folder / "slurm" / "batches";
-  std::error_code error;
-  fs::remove_all(dir, error);
-  fs::create_directories(dir, error);
-  if (error) throw InputError(dir.string(), "", "cannot be made: " + error.message());
-  std::size_t tasks = 0;
-  for (std::size_t at = 0; at < jobs.size(); at += batch, ++tasks) {
-    const auto begin = jobs.begin() + static_cast<std::ptrdiff_t>(at);
-    const auto end = jobs.begin() + static_cast<std::ptrdiff_t>(std::min(at + batch, jobs.size()));
-    evaluation::write_whole_file(dir / (std::to_string(tasks) + ".json"),
-                                 core::json_text(batch_json({begin, end}, o), 1));
-  }
-  evaluation::write_whole_file(dir / "task.sh",
-                               "#!/bin/sh\nexec \"$1\" trials \"$2/$SLURM_ARRAY_TASK_ID.json\"\n");
-  std::vector<std::string> argv = {"sbatch",
-                                   "--parsable",
-                                   "--job-name=karst-" + o.name,
-                                   "--array=0-" + std::to_string(tasks - 1),
-                                   "--ntasks=1",
-                                   "--cpus-per-task=1",
-                                   "--chdir=" + o.folder.string(),
-                                   "--output=" + (dir / "%a.txt").string()};
-  argv.insert(argv.end(), o.sbatch.begin(), o.sbatch.end());
-  argv.insert(argv.end(), {(dir / "task.sh").string(), o.karst.string(), dir.string()});
-  const std::string printed = ask(argv);
-  const std::string last =
-      printed.substr(printed.rfind('\n') == std::string::npos ? 0 : printed.rfind('\n') + 1);
-  std::string array = last.substr(0, last.find(';'));  // "12;cluster" where there are several
-  evaluation::write_whole_file(array_file(o), array + "\n");
-  return array;
-}
-
-/// Records a task that ended without a trial: out of memory, out of time, or a failed node.
-void record_lost(const TrialJob& job) {
-  fs::create_directories(job.run_dir);
-  std::ofstream(job.run_dir / kLogFile) << "its Slurm task ended without it, " << kAttempts << " times\n";
-  write_note(job.run_dir, {{0, SIGKILL, false, 0}, "slurm", job.identity});
-}
-
-class Waiting {
+/// A campaign while Slurm flies it.
+class Submission {
  public:
-  Waiting(const std::vector<TrialJob>& jobs, const ExecutorEvents& events)
-      : jobs_(jobs), events_(events), ended_(jobs.size()) {}
-  /// Collects the run directories that have appeared.
-  void look() {
-    for (std::size_t i = 0; i < jobs_.size(); ++i) {
-      if (ended_[i] || !is_flown(jobs_[i])) continue;
-      ended_[i] = true;
-      if (events_.ended) events_.ended(i, read_note(jobs_[i].run_dir).end);
+  Submission(const std::vector<TrialJob>& jobs, const SlurmOptions& o, const ExecutorEvents& events)
+      : jobs_(jobs), o_(o), events_(events), tasks_(jobs, events, o.late_s) {
+    const std::size_t first = o.batch > 0 ? o.batch : cpus_of_task(o) * batch_size(o.expected_trial_s);
+    tasks_.plan(first);
+  }
+
+  /// Returns false if stopped.
+  bool fly() {
+    for (bool states_are_new = false;; states_are_new = false) {
+      if (o_.stop && *o_.stop) return false;
+      if (Clock::now() >= next_poll_) states_are_new = poll();
+      tasks_.settle(states_are_new);
+      note_arrays();
+      if (tasks_.has_todo() && tasks_.waiting() < kTasksWaiting && Clock::now() >= next_submission_) submit();
+      if (tasks_.all()) return true;
+      tell();
+      std::this_thread::sleep_for(std::chrono::duration<double>(o_.look_s));
     }
   }
-  std::vector<TrialJob> missing() const {
-    std::vector<TrialJob> jobs;
-    for (std::size_t i = 0; i < jobs_.size(); ++i)
-      if (!ended_[i]) jobs.push_back(jobs_[i]);
-    return jobs;
-  }
-  bool all() const {
-    return std::all_of(ended_.begin(), ended_.end(), [](bool e) { return e; });
+  void cancel() {
+    cancel_arrays(arrays_, events_.say);
+    note({}, o_);
   }
 
  private:
-  const std::vector<TrialJob>& jobs_;
-  const ExecutorEvents& events_;
-  std::vector<bool> ended_;
-};
-
-/// Returns false if stopped.
-bool wait_for(const std::string& array, Waiting& waiting, const SlurmOptions& o,
-              const ExecutorEvents& events) {
-  for (int poll = 1;; ++poll) {
-    const bool over = poll % kPollsOfQueue == 0 && !is_active(array);  // asked before the folder is looked at
-    waiting.look();
-    if (over || waiting.all()) return true;
-    if (o.stop && *o.stop) return false;
-    if (events.tick) events.tick(0);
-    std::this_thread::sleep_for(kPoll);
+  bool poll() {
+    const auto begin = Clock::now();
+    const std::optional<TaskStates> states = ask_queue(tasks_.arrays());
+    const auto end = Clock::now();
+    next_poll_ = end + std::max<Clock::duration>(queue_poll(), kRest * (end - begin));
+    if (!states && !is_mute_) say("squeue does not answer; waits for it");
+    is_mute_ = !states;
+    if (states) tasks_.take(*states);
+    return states.has_value();
   }
-}
+
+  /// Writes the batches of an array into a folder of their own, and submits the array.
+  void submit() {
+    std::vector<SlurmTask> tasks = tasks_.next(kTasksOfArray);
+    const fs::path dir = batches(o_) / std::to_string(++submissions_);
+    std::error_code error;
+    fs::create_directories(dir, error);
+    if (error) throw InputError(dir.string(), "", "cannot be made: " + error.message());
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      tasks[i].log = dir / (std::to_string(i) + ".txt");
+      write_batch(dir / (std::to_string(i) + ".json"), of(tasks[i]));
+    }
+    evaluation::write_whole_file(dir / "task.sh",
+                                 "#!/bin/sh\nexec \"$1\" trials \"$2/$SLURM_ARRAY_TASK_ID.json\"\n");
+    std::vector<std::string> arguments = {"--parsable",
+                                          "--requeue",  // of a node that is lost
+                                          "--job-name=karst-" + o_.name,
+                                          "--array=0-" + std::to_string(tasks.size() - 1),
+                                          "--ntasks=1",
+                                          "--cpus-per-task=1",
+                                          "--chdir=" + o_.folder.string(),
+                                          "--output=" + (dir / "%a.txt").string()};
+    if (const std::string bad = tasks_.bad_nodes(); !bad.empty()) {
+      say("no further tasks for " + bad + ", where tasks could not fly their trials");
+      arguments.push_back("--exclude=" + bad);
+    }
+    arguments.insert(arguments.end(), o_.sbatch.begin(), o_.sbatch.end());
+    arguments.insert(arguments.end(), {(dir / "task.sh").string(), o_.karst.string(), dir.string()});
+    std::string array;
+    try {
+      array = submit_array(arguments);
+    } catch (const InputError& refused) {
+      if (submissions_ == 1 || !may_pass(refused.what())) throw;
+      say(std::string("tries again in half a minute: ") + refused.what());
+      next_submission_ = Clock::now() + kTryAgain;
+      return;
+    }
+    arrays_.insert(array);
+    note(arrays_, o_);
+    std::size_t trials = 0;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      tasks[i].id = {array, i};
+      trials += tasks[i].trials.size();
+    }
+    tasks_.submitted(tasks);
+    say("array " + array + ": " + counted(tasks.size(), "task") + " with " + counted(trials, "trial"));
+    next_poll_ = std::max(next_poll_, Clock::now() + queue_poll());
+    last_running_ = Clock::now();
+  }
+
+  Batch of(const SlurmTask& task) const {
+    Batch batch{{}, o_.karst, o_.folder / "flying", o_.timeout_s};
+    for (const std::size_t i : task.trials) batch.trials.push_back(jobs_[i]);
+    return batch;
+  }
+
+  /// Only arrays with tasks under way need to be cancelled by a later start.
+  void note_arrays() {
+    std::set<std::string> now = tasks_.arrays();
+    if (now == arrays_) return;
+    arrays_ = std::move(now);
+    note(arrays_, o_);
+  }
+
+  void tell() {
+    const std::size_t running = tasks_.running(), waiting = tasks_.waiting();
+    const std::string why = tasks_.why_waiting();
+    if (events_.queue)
+      events_.queue(counted(running, "task") + (running == 1 ? " runs, " : " run, ") +
+                    std::to_string(waiting) + (waiting == 1 ? " waits" : " wait") +
+                    (why.empty() || running > 0 ? "" : " (" + why + ")"));
+    if (events_.tick) events_.tick(running);
+    if (running > 0 || waiting == 0) last_running_ = Clock::now();
+    if (Clock::now() - last_running_ < kSilence || said_why_ == why) return;
+    said_why_ = why;
+    say("no task runs, " + counted(waiting, "task") + (waiting == 1 ? " waits" : " wait") +
+        (why.empty() ? "" : "; Slurm's reason: " + why));
+  }
+
+  Clock::duration queue_poll() const {
+    return std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(kLooksAPoll * o_.look_s));
+  }
+  void say(const std::string& text) const {
+    if (events_.say) events_.say("slurm: " + text);
+  }
+
+  const std::vector<TrialJob>& jobs_;
+  const SlurmOptions& o_;
+  const ExecutorEvents& events_;
+  SlurmTasks tasks_;
+  std::set<std::string> arrays_;
+  std::size_t submissions_ = 0;
+  bool is_mute_ = false;
+  std::optional<std::string> said_why_;
+  Clock::time_point next_poll_ = Clock::now() + queue_poll(), next_submission_{},
+                    last_running_ = Clock::now();
+};
 
 }  // namespace
 
@@ -175,64 +204,26 @@ std::size_t batch_size(double expected_trial_s) {
 }
 
 bool run_on_slurm(const std::vector<TrialJob>& jobs, const SlurmOptions& o, const ExecutorEvents& events) {
-  cancel_left_behind(o);
+  if (const std::set<std::string> arrays = left_behind(o); !arrays.empty()) {
+    if (events.say) events.say("slurm: cancels what an earlier start left");
+    cancel_arrays(arrays, events.say);
+    note({}, o);
+  }
   std::error_code ignored;
   fs::remove_all(o.folder / "flying", ignored);
-  Waiting waiting(jobs, events);
-  waiting.look();  // trials flown before the cancellation
-  for (int attempt = 0; attempt < kAttempts && !waiting.all(); ++attempt) {
-    const std::vector<TrialJob> missing = waiting.missing();
-    const std::size_t first = o.batch > 0 ? o.batch : batch_size(o.expected_trial_s);
-    const std::size_t batch = attempt == 0 ? first : 1;  // a lost trial must not take others with it
-    for (std::size_t at = 0; at < missing.size(); at += batch * kTasksOfArray) {
-      const auto begin = missing.begin() + static_cast<std::ptrdiff_t>(at);
-      const auto end =
-          missing.begin() + static_cast<std::ptrdiff_t>(std::min(at + batch * kTasksOfArray, missing.size()));
-      const std::string array = submit({begin, end}, batch, o);
-      if (!wait_for(array, waiting, o, events)) {
-        cancel_left_behind(o);
-        return false;
-      }
-      fs::remove(array_file(o), ignored);
-    }
-  }
-  for (const TrialJob& lost : waiting.missing()) record_lost(lost);
-  waiting.look();
-  return true;
-}
-
-bool fly_batch(const fs::path& file, const std::atomic<bool>* stop) {
-  const json batch = core::json_of(core::read_input(file, core::kMaxTextFileBytes));
-  std::vector<TrialJob> jobs;
-  ExecutorOptions options;
+  fs::remove_all(batches(o), ignored);
+  Submission submission(jobs, o, events);
   try {
-    for (const json& t : batch.at("trials")) {
-      TrialJob job{t.at("command"), t.at("run_dir").get<std::string>(), t.at("identity")};
-      if (!is_flown(job)) jobs.push_back(job);
-    }
-    options.timeout_s = batch.at("timeout_s");
-    options.flying = batch.at("flying").get<std::string>();
-    options.finish = [karst = batch.at("karst").get<std::string>()](const fs::path& dir) {
-      evaluate_record(karst, dir);
-    };
-  } catch (const json::exception& e) {
-    throw InputError(file.string(), "", std::string("is no batch of trials: ") + e.what());
-  }
-  options.stop = stop;
-  return run_trials(jobs, options, {});
-}
-
-bool is_flown(const TrialJob& job) {
-  try {
-    return fs::exists(job.run_dir) && read_note(job.run_dir).identity == job.identity;
-  } catch (const InputError&) {
+    if (submission.fly()) return true;
+    submission.cancel();
     return false;
+  } catch (...) {  // the disk is full, a program was changed ...: nothing of it must go on flying
+    try {
+      submission.cancel();
+    } catch (const InputError&) {  // the first reason counts; the next start cancels
+    }
+    throw;
   }
-}
-
-void evaluate_record(const fs::path& karst, const fs::path& run_dir) {
-  if (fs::exists(run_dir / "mission.info") && !fs::exists(run_dir / "metrics.json"))
-    run_process({karst.string(), "report", run_dir.string(), "--no-report"}, kEvaluationLimit_s);
 }
 
 }  // namespace karst::campaign

@@ -18,6 +18,8 @@ struct SlurmOptions {
   double expected_trial_s = 10;     // wall clock; determines the batch size
   std::size_t batch = 0;            // trials per task; 0: batch_size(expected_trial_s)
   std::vector<std::string> sbatch;  // additional options of sbatch, such as "--partition=long"
+  double late_s = 90;   // a shared disk may show a finished trial that much later: NFS caches 60 s
+  double look_s = 0.5;  // between looks at the folder; the queue is asked six times less often
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -26,20 +28,11 @@ struct SlurmOptions {
 std::size_t batch_size(double expected_trial_s);
 
 /// Flies all jobs; calls events.ended when a run directory appears. A trial whose task is lost twice has the
-/// result "killed". First cancels an array left by a killed campaign. If stopped, cancels the array and
-/// returns false. Throws core::InputError if Slurm is not reachable or refuses.
+/// result "killed". (A task that Slurm itself starts again, because its node was lost, does not count.) First
+/// cancels arrays left by a killed campaign. If stopped, cancels its arrays and returns false. Throws
+/// core::InputError, with nothing left flying, if Slurm is not reachable or refuses, if tasks are cancelled
+/// by somebody, or if they end twice for a reason other than their trials.
 bool run_on_slurm(const std::vector<TrialJob>& jobs, const SlurmOptions& options,
                   const ExecutorEvents& events);
-
-/// The work of a task: flies the trials of a batch file, one after the other. Skips trials already flown.
-/// Returns false if stopped.
-bool fly_batch(const std::filesystem::path& batch, const std::atomic<bool>* stop);
-
-/// Whether exactly this trial has been flown.
-bool is_flown(const TrialJob& job);
-
-/// Evaluates the record of a crashed trial up to its end, unless there are figures
-/// already.
-void evaluate_record(const std::filesystem::path& karst, const std::filesystem::path& run_dir);
 
 }  // namespace karst::campaign

@@ -105,10 +105,18 @@ void Store::describe_cave(std::size_t cave, const std::string& description) {
   transaction.commit();
 }
 
-void Store::add(const StoredTrial& trial) {
+void Store::add(const std::vector<StoredTrial>& trials) {
+  if (trials.empty()) return;
+  const std::vector<std::int64_t> seeds = head().seeds;
+  const bool tells_ending = trial_columns(file_, db_.get()).contains("ended");  // or an earlier karst made it
+  sqlite::Transaction transaction(file_, db_.get());
+  for (const StoredTrial& trial : trials) write(trial, seeds, tells_ending);
+  transaction.commit();
+}
+
+void Store::write(const StoredTrial& trial, const std::vector<std::int64_t>& seeds, bool tells_ending) {
   const TrialResult& r = trial.result;
   const auto definitions = evaluation::metric_definitions();
-  const std::vector<std::int64_t> seeds = head().seeds;
   const auto place = std::find(seeds.begin(), seeds.end(), r.seed);
   if (place == seeds.end() || r.figures.size() != definitions.size())
     throw InputError(file_.string(), "trial", "seed or figures do not belong to this campaign");
@@ -122,12 +130,10 @@ void Store::add(const StoredTrial& trial) {
     marks += ", ?" + std::to_string(11 + i);
   }
   const int ended_at = static_cast<int>(11 + definitions.size());
-  const bool tells_ending = trial_columns(file_, db_.get()).contains("ended");  // or an earlier karst made it
   if (tells_ending) {
     names += ", ended";
     marks += ", ?" + std::to_string(ended_at);
   }
-  sqlite::Transaction transaction(file_, db_.get());
   Statement row(file_, db_.get(),
                 "INSERT OR REPLACE INTO trial(id, contestant, cave, seed, status, outcome, reason,"
                 " binary_version, mission_hash, run_dir" +
@@ -149,7 +155,6 @@ void Store::add(const StoredTrial& trial) {
   timing.bind(1, id).bind(2, t.machine).bind(3, t.trial_s).bind(4, f.wall_s).bind(5, f.simulated_s);
   timing.bind(6, f.decide_mean_ms).bind(7, f.decide_p99_ms).bind(8, f.decide_max_ms);
   timing.bind(9, f.plan_mean_ms).bind(10, f.plan_p99_ms).bind(11, f.plan_max_ms).run();
-  transaction.commit();
 }
 
 std::set<TrialKey> Store::finished() const {

@@ -63,14 +63,17 @@ class Store {
   void extend(const StoreHead& head);
   /// Replaces the figures by which `karst select` compares caves: a JSON object.
   void describe_cave(std::size_t cave, const std::string& description);
-  /// Adds a trial with its curve and timing. Replaces a previous entry of the same trial.
-  void add(const StoredTrial& trial);
+  /// Adds trials with their curves and timings as one transaction, so that the disk is waited for once.
+  /// Replaces previous entries of the same trials.
+  void add(const std::vector<StoredTrial>& trials);
+  void add(const StoredTrial& trial) { add(std::vector<StoredTrial>{trial}); }
   std::set<TrialKey> finished() const;
 
  private:
   struct Close {
     void operator()(sqlite3* db) const;
   };
+  void write(const StoredTrial& trial, const std::vector<std::int64_t>& seeds, bool tells_ending);
   explicit Store(std::filesystem::path file) : file_(std::move(file)) {}
   std::filesystem::path file_;
   std::unique_ptr<sqlite3, Close> db_;

@@ -114,6 +114,18 @@ TEST(Executor, WhatAnEarlierAttemptLeftIsReplaced) {
   EXPECT_FALSE(fs::exists(dir / "trials" / "a" / "old"));
 }
 
+TEST(Executor, ATrialThatAnotherMachineHasFlownMeanwhileStays) {
+  const fs::path dir = fresh_folder("meanwhile");
+  const fs::path there = dir / "trials" / "a";
+  const std::string note = R"({"exit_code": 0, "signal": 0, "hung": false, "wall_s": 1, "machine": "other",)"
+                           R"( "identity": "identity of a"})";
+  ends_of({job(dir, "a",
+               "mkdir -p " + there.string() + "; echo '" + note + "' > " + there.string() + "/trial.json")},
+          options_for(dir));
+  EXPECT_EQ(read_note(there).machine, "other");
+  EXPECT_TRUE(fs::is_empty(dir / "flying"));
+}
+
 TEST(Executor, ATrialThatFindsNoRoomIsNoResult) {
   const fs::path dir = fresh_folder("no_room");
   const std::string e = error_of([&] {

@@ -4,8 +4,11 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <thread>
 
 #include "sdk/campaign/run/collect.h"
+#include "sdk/campaign/run/slurm_batch.h"
+#include "sdk/campaign/run/slurm_queue.h"
 #include "tests/unit/campaign/store/store_fixture.h"
 
 namespace karst::campaign {
@@ -22,7 +25,7 @@ std::string text_of(const fs::path& file) {
 }
 
 /// sbatch notes how it was asked, and what `flown/1`, `flown/2` ... hold are the run directories that its
-/// first, second ... array brings about; no task ever waits.
+/// first, second ... array brings about; no task ever waits. squeue prints the file `queue`, if it is there.
 class StandInSlurm {
  public:
   StandInSlurm(const fs::path& dir, const fs::path& trials) : path_(std::getenv("PATH")) {
@@ -31,8 +34,10 @@ class StandInSlurm {
     write_program(dir / "bin" / "sbatch", "echo \"$*\" >> " + (dir / "asked").string() + "; n=$(wc -l < " +
                                               (dir / "asked").string() + "); mv " + (dir / "flown").string() +
                                               "/$n/* " + trials.string() + " 2>/dev/null; echo $n\n");
-    write_program(dir / "bin" / "squeue", "exit 0\n");
-    write_program(dir / "bin" / "scancel", "exit 0\n");
+    write_program(dir / "bin" / "squeue", "cat " + (dir / "queue").string() + " 2>/dev/null; : > " +
+                                              (dir / "polled").string() + "\n");
+    write_program(dir / "bin" / "scancel", "echo \"$*\" >> " + (dir / "cancelled").string() + "\n: > " +
+                                               (dir / "queue").string() + "\n");
     setenv("PATH", ((dir / "bin").string() + ":" + path_).c_str(), 1);
   }
   ~StandInSlurm() { setenv("PATH", path_.c_str(), 1); }
@@ -75,6 +80,7 @@ TEST(Slurm, ATrialThatIsLostTwiceIsAFailedOneAndTakesNoneWithIt) {
   options.karst = "/bin/karst";
   options.name = "lost";
   options.batch = 3;
+  options.look_s = 0.05;
   std::vector<std::size_t> ended;
   std::vector<ProcessEnd> ends(3);
   ASSERT_TRUE(run_on_slurm(jobs, options,
@@ -99,6 +105,145 @@ TEST(Slurm, ATrialThatIsLostTwiceIsAFailedOneAndTakesNoneWithIt) {
   EXPECT_TRUE(lost.result.failed);
   EXPECT_TRUE(says(lost.result.reason, "its Slurm task ended without it, 2 times")) << lost.result.reason;
   EXPECT_TRUE(is_flown(jobs[2]));  // a resumed campaign does not fly it a third time
+}
+
+/// Waits for what another thread brings about, but not for ever.
+template <class Condition>
+void wait_until(Condition condition) {
+  for (int i = 0; i < 4000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+/// A campaign of three trials, one a task, on a stand-in whose squeue prints these lines.
+class OnStandIn {
+ public:
+  OnStandIn(const std::string& name, const std::string& queue)
+      : dir(fresh_folder(name)), slurm_(dir, dir / "trials" / "near" / "maze") {
+    const Plan plan = plan_of_three();
+    for (const std::int64_t seed : plan.seeds)
+      jobs.push_back(
+          {{"karst", "fly"}, dir / run_dir_of(plan, {0, 0, seed}), "identity " + std::to_string(seed)});
+    std::ofstream(dir / "queue") << queue;
+    options.folder = dir;
+    options.karst = "/bin/karst";
+    options.name = "lost";
+    options.batch = 1;
+    options.look_s = 0.05;
+  }
+  void fly_trial(std::size_t i) const {
+    fs::create_directories(dir / "part");
+    std::ofstream(dir / "part" / "metrics.json") << "{\"outcome\": \"landed\", \"coverage\": 0.5}";
+    write_note(dir / "part", {{0, 0, false, 1}, "node", jobs[i].identity});
+    fs::create_directories(jobs[i].run_dir.parent_path());
+    fs::rename(dir / "part", jobs[i].run_dir);
+  }
+  bool run() {
+    return run_on_slurm(jobs, options,
+                        {{}, {}, [this](const std::string& text) { said += text + "\n"; }, {}});
+  }
+  fs::path dir;
+  std::vector<TrialJob> jobs;
+  SlurmOptions options;
+  std::string said;
+
+ private:
+  StandInSlurm slurm_;
+};
+
+TEST(Slurm, TasksThatCannotFlyStopTheCampaignAndAreNoResults) {
+  OnStandIn s("slurm_no_karst",
+              "1|0|FAILED|32512|0|node7|NonZeroExitCode|\n2|0|FAILED|32512|0|node8|NonZeroExitCode|\n");
+  s.jobs.resize(1);
+  // What the second task printed is in its output, by the time it is over.
+  std::thread task([&] {
+    const fs::path log = s.dir / "slurm" / "batches" / "2" / "0.txt";
+    wait_until([&] { return fs::exists(log.parent_path() / "task.sh"); });
+    std::ofstream(log) << "task.sh: /bin/karst: not found\n";
+  });
+  const std::string e = error_of([&] { s.run(); });
+  task.join();
+  EXPECT_TRUE(says(e, "task 2_0")) << e;
+  EXPECT_TRUE(says(e, "FAILED with exit code 127 on node8")) << e;
+  EXPECT_TRUE(says(e, "it said last: task.sh: /bin/karst: not found")) << e;
+  EXPECT_TRUE(says(s.said, "task 1_0 ended without 1 trial (FAILED with exit code 127 on node7)")) << s.said;
+  EXPECT_FALSE(fs::exists(s.jobs[0].run_dir));
+}
+
+TEST(Slurm, ATaskThatSomebodyCancelsStopsTheCampaignAndItsOtherTasks) {
+  OnStandIn s("slurm_cancelled",
+              "1|0|CANCELLED|0|0|node1|None|\n1|1|RUNNING|0|0|node1|None|\n1|2|RUNNING|0|0|node1|None|\n");
+  const std::string e = error_of([&] { s.run(); });
+  EXPECT_TRUE(says(e, "task 1_0")) << e;
+  EXPECT_TRUE(says(e, "was cancelled by somebody")) << e;
+  EXPECT_EQ(text_of(s.dir / "cancelled"), "--quiet 1\n");
+  EXPECT_FALSE(fs::exists(s.dir / "slurm" / "array"));
+  for (const TrialJob& j : s.jobs) EXPECT_FALSE(fs::exists(j.run_dir));
+}
+
+TEST(Slurm, ATrialThatASharedDiskShowsLateIsNotLost) {
+  OnStandIn s(
+      "slurm_late",
+      "1|0|COMPLETED|0|0|node1|None|\n1|1|COMPLETED|0|0|node1|None|\n1|2|COMPLETED|0|0|node1|None|\n");
+  std::thread disk([&] {
+    wait_until([&] { return fs::exists(s.dir / "polled"); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    for (std::size_t i = 0; i < 3; ++i) s.fly_trial(i);
+  });
+  EXPECT_TRUE(s.run());
+  disk.join();
+  const std::string asked = text_of(s.dir / "asked");
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), '\n'), 1) << asked;
+}
+
+TEST(Slurm, ANodeThatFliesNothingGetsNoMoreTasks) {
+  OnStandIn s("slurm_bad_node",
+              "1|0|COMPLETED|0|0|node1|None|\n1|1|COMPLETED|0|0|node1|None|\n"
+              "1|2|FAILED|256|0|node2|NonZeroExitCode|\n2|0|COMPLETED|0|0|node1|None|\n");
+  std::thread flights([&] {
+    wait_until([&] { return fs::exists(s.dir / "asked"); });
+    s.fly_trial(0);
+    s.fly_trial(1);
+    wait_until([&] { return says(text_of(s.dir / "asked"), "--exclude"); });
+    s.fly_trial(2);
+  });
+  EXPECT_TRUE(s.run());
+  flights.join();
+  EXPECT_TRUE(says(text_of(s.dir / "asked"), "--exclude=node2")) << text_of(s.dir / "asked");
+  EXPECT_TRUE(says(s.said, "no further tasks for node2")) << s.said;
+}
+
+TEST(Slurm, ReadsHowTasksAre) {
+  const TaskStates states = read_queue(
+      "12                  |3           |OUT_OF_MEMORY       |0           |0       |node3      |None  |\n"
+      "12                  |4           |FAILED              |9           |0       |node4      |None  |\n"
+      "12                  |N/A         |PENDING             |0           |0       |           |None  |\n"
+      "12                  |5           |PENDING             |0           |1       |           |BeginTime|\n"
+      "squeue: error: something\n");
+  ASSERT_EQ(states.size(), 3u);
+  EXPECT_EQ(states.at({"12", 3}).text(), "OUT_OF_MEMORY on node3");
+  EXPECT_TRUE(states.at({"12", 3}).is_over());
+  EXPECT_EQ(states.at({"12", 4}).text(), "FAILED by signal 9 on node4");
+  EXPECT_FALSE(states.at({"12", 4}).gave_up());
+  EXPECT_FALSE(states.at({"12", 5}).is_over());
+  EXPECT_EQ(states.at({"12", 5}).restarts, 1);
+}
+
+TEST(Slurm, ATaskFliesAsManyTrialsAtOnceAsItHasCpus) {
+  const fs::path dir = fresh_folder("slurm_cpus");
+  Batch batch{{}, "/bin/true", dir / "flying", 60};
+  for (const char* name : {"a", "b", "c"}) {  // each ends when all three have begun
+    const std::string mark = (dir / "begun").string();
+    batch.trials.push_back({{"/bin/sh", "-c",
+                             "mkdir -p " + mark + "; : > " + mark + "/" + name + "; while [ $(ls " + mark +
+                                 " | wc -l) -lt 3 ]; do sleep 0.02; done",
+                             "trial"},
+                            dir / "trials" / name,
+                            name});
+  }
+  write_batch(dir / "0.json", batch);
+  setenv("SLURM_CPUS_ON_NODE", "3", 1);
+  EXPECT_TRUE(fly_batch(dir / "0.json", nullptr));
+  unsetenv("SLURM_CPUS_ON_NODE");
+  for (const TrialJob& t : batch.trials) EXPECT_EQ(read_note(t.run_dir).end.exit_code, 0);
 }
 
 }  // namespace

@@ -307,5 +307,24 @@ class NoTrace : public testing::Environment {
 };
 const auto* const no_trace = testing::AddGlobalTestEnvironment(new NoTrace);
 
+TEST(Store, TrialsAddedAtOnceAreThoseAddedOneByOne) {
+  const fs::path dir = fresh_folder("at_once");
+  const std::vector<StoredTrial> trials = {trial_of(0, 0, 1), trial_of(2, 1, 9), trial_of(1, 0, 2)};
+  Store one_by_one = Store::create(dir / "a.sqlite", small_head()),
+        at_once = Store::create(dir / "b.sqlite", small_head());
+  for (const StoredTrial& t : trials) one_by_one.add(t);
+  at_once.add(trials);
+  EXPECT_EQ(dump(dir / "a.sqlite"), dump(dir / "b.sqlite"));
+}
+
+TEST(Store, OfTrialsAddedAtOnceAllAreThereOrNone) {
+  const fs::path dir = fresh_folder("all_or_none");
+  Store store = Store::create(dir / "a.sqlite", small_head());
+  StoredTrial strange = trial_of(0, 0, 1);
+  strange.result.seed = 4711;  // not of this campaign
+  EXPECT_NE(error_of([&] { store.add(std::vector<StoredTrial>{trial_of(0, 0, 2), strange}); }), "");
+  EXPECT_TRUE(store.finished().empty());
+}
+
 }  // namespace
 }  // namespace karst::campaign
