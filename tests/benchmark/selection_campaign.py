@@ -24,6 +24,7 @@ import csv
 import json
 import os
 import random
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -64,7 +65,7 @@ KINDS = {
                         "chimneys": (0, 1)}),
 }
 WHOLE = {"loops", "domes", "shafts", "chimneys"}
-TRIES = 12
+TRIES = 60
 
 VEHICLES = ["lidar_uav", "camera_uav"]
 BATTERIES = ["3 min", "6 min"]
@@ -172,6 +173,13 @@ def contestants(args):
     return lines
 
 
+def in_order(args, name, caves):
+    """The caves of a campaign that was begun come first, as there: a store is only ever appended to."""
+    file = args.folder / f"{name}.info"
+    begun = re.findall(r"^cave { file caves/(\w+)\.info }$", file.read_text(), re.M) if file.exists() else []
+    return begun + [cave for cave in caves if cave not in begun]
+
+
 def write_campaign(args, name, vehicle, battery, caves, seeds):
     text = "\n".join([
         f"name {name}", "profile campaign", f'flight_time "{battery}"', 'trial_timeout "1 h"',
@@ -201,9 +209,9 @@ def flown_whole(args, name, caves, seeds):
 def fly(args):
     for number, (flights, seeds) in enumerate(rounds_of(args)[:args.rounds], 1):
         for name, vehicle, battery in conditions(args):
-            caves = flights[name]
-            if flown_whole(args, name, caves, seeds):
+            if flown_whole(args, name, flights[name], seeds):
                 continue
+            caves = in_order(args, name, flights[name])
             print(f"round {number}: {name}, {len(caves)} caves, {seeds} seeds", flush=True)
             campaign = write_campaign(args, name, vehicle, battery, caves, seeds)
             command = ["compare", str(campaign), "--out", str(args.folder / name), "--keep", "figures", "--quiet"]
