@@ -59,9 +59,10 @@ karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, 
   CellKey end = map.key_of(from);
   // The result if traverse() visits no cell: it does not start far outside the world, where all is unknown.
   Cell stopped_by = through_unknown ? Cell::free : Cell::unknown;
+  core::VoxelReader reader(map);
   core::traverse(from, to, map.resolution_m(), [&](const CellKey& k) {
     end = k;
-    const Cell c = map.at(k);
+    const Cell c = reader.at(k);
     stopped_by = c == Cell::unknown && through_unknown ? Cell::free : c;
     return stopped_by == Cell::free;
   });
