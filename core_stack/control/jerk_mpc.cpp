@@ -193,7 +193,8 @@ double JerkMpc::newton_step(std::span<const MotionTarget> targets, double mu) {
     P.middleCols<3>(3) += d * P.leftCols<3>();
     P.bottomRows<3>() += d * P.middleRows<3>(3) + d2 * P.topRows<3>();  // A' P A
     P.middleRows<3>(3) += d * P.topRows<3>();
-    P.noalias() -= H.transpose() * s.feedback;
+    // By coefficients: for three terms each, Eigen's product of large matrices takes four times as long.
+    P.noalias() -= H.transpose().lazyProduct(s.feedback);
     p.segment<3>(6) += d * p.segment<3>(3) + d2 * p.segment<3>(0);
     p.segment<3>(3) += d * p.segment<3>(0);
     p.noalias() -= H.transpose() * s.feedforward;

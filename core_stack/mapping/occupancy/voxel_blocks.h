@@ -47,10 +47,8 @@ inline Cell class_of(std::int16_t v) {
 struct Block {
   explicit Block(BlockId name) : id(name) { log_odds.fill(kUnknown); }
   std::array<std::int16_t, 512> log_odds;
-  std::array<std::uint64_t, 8> hit{}, miss{};  // marks of the scan being inserted, otherwise zero
   BlockId id;
   std::uint64_t revision = 0;
-  bool touched = false;
 };
 
 class BlockTable {

@@ -1,7 +1,5 @@
 // Writing to the map: one scan's rays, or a ball declared free.
-#include <bit>
-
-#include "core_stack/mapping/occupancy/cell_walk.h"
+#include "core_stack/mapping/occupancy/scan_marks.h"
 #include "core_stack/mapping/occupancy/voxel_storage.h"
 
 namespace karst::core {
@@ -60,42 +58,6 @@ class RaySet {
   std::vector<std::uint64_t> slots_ = std::vector<std::uint64_t>(4096);
 };
 
-/// Marks cells in the blocks' bit sets and records the touched blocks.
-class Marker {
- public:
-  explicit Marker(BlockTable& blocks) : blocks_(blocks) {}
-
-  void hit(PackedCell p) { block(p).hit[word_in_block(p)] |= std::uint64_t{1} << bit_in_block(p); }
-  /// Marks all cells of the walk except the last.
-  void miss(CellWalk walk) {
-    for (std::int32_t left = walk.steps(); left > 0; --left, walk.advance()) {
-      const PackedCell p = walk.cell();
-      block(p).miss[word_in_block(p)] |= std::uint64_t{1} << bit_in_block(p);
-    }
-  }
-  const std::vector<Block*>& touched() const { return touched_; }
-
- private:
-  Block& block(PackedCell p) {
-    if ((p & ~kInBlock) != id_) [[unlikely]]
-      enter(p & ~kInBlock);
-    return *last_;
-  }
-  void enter(BlockId id) {
-    id_ = id;
-    last_ = &blocks_.find_or_add(id);
-    if (!last_->touched) {
-      last_->touched = true;
-      touched_.push_back(last_);
-    }
-  }
-
-  BlockTable& blocks_;
-  BlockId id_ = ~BlockId{0};
-  Block* last_ = nullptr;
-  std::vector<Block*> touched_;
-};
-
 /// Converts `p` to cells; false for NaN.
 bool inside(const Vec3& p) {
   const auto in = [](double v) { return v >= -kWorldCells && v < kWorldCells; };
@@ -106,11 +68,28 @@ CellKey cell_at(const Vec3& p) {
   return {floor_of(p.x()), floor_of(p.y()), floor_of(p.z())};
 }
 
-template <class Visit>
-void for_each_bit(const std::array<std::uint64_t, 8>& bits, Visit&& visit) {
-  for (std::uint32_t w = 0; w < bits.size(); ++w)
-    for (std::uint64_t rest = bits[w]; rest != 0; rest &= rest - 1)
-      visit(w * 64 + static_cast<std::uint32_t>(std::countr_zero(rest)));
+/// The rays that are to be cast: no two that pass the same cells.
+std::vector<Beam> distinct_beams(std::span<const Ray> rays, double cells_per_m) {
+  RaySet seen;
+  std::vector<Beam> out;
+  out.reserve(rays.size());
+  for (const Ray& ray : rays) {
+    const Vec3 from = ray.origin.cast<double>() * cells_per_m, to = ray.end.cast<double>() * cells_per_m;
+    if (!inside(from) || !inside(to)) continue;
+    const CellKey first = cell_at(from);
+    if (seen.add(first, cell_at(2.0 * to), ray.hit)) out.push_back({from, to, first, cell_at(to), ray.hit});
+  }
+  return out;
+}
+
+MarkGrid grid_around(std::span<const Beam> beams, std::vector<Mark>& cells) {
+  CellKey low = beams.front().first, high = low;
+  for (const Beam& b : beams)
+    for (const CellKey& k : {b.first, b.last}) {
+      low = {std::min(low.x, k.x), std::min(low.y, k.y), std::min(low.z, k.z)};
+      high = {std::max(high.x, k.x), std::max(high.y, k.y), std::max(high.z, k.z)};
+    }
+  return {low, high, cells};
 }
 
 }  // namespace
@@ -118,31 +97,32 @@ void for_each_bit(const std::array<std::uint64_t, 8>& bits, Visit&& visit) {
 std::vector<CellChange> VoxelMap::insert(std::span<const Ray> rays) {
   Storage& s = *storage_;
   ++s.revision;
-  RaySet seen;
-  Marker marker(s.blocks);
-  for (const Ray& ray : rays) {
-    const Vec3 from = ray.origin.cast<double>() * s.cells_per_m, to = ray.end.cast<double>() * s.cells_per_m;
-    if (!inside(from) || !inside(to)) continue;
-    if (!seen.add(cell_at(from), cell_at(2.0 * to), ray.hit)) continue;
-    marker.miss(CellWalk(from, to));
-    if (ray.hit) marker.hit(pack(cell_at(to)));
-  }
-
+  const std::vector<Beam> beams = distinct_beams(rays, s.cells_per_m);
   std::vector<CellChange> changes;
-  for (Block* b : marker.touched()) {
-    const CellKey corner = corner_of(b->id);
-    const auto add = [&](std::uint32_t i, std::int16_t step, std::int16_t bound) {
-      const std::int16_t v = b->log_odds[i];
-      if (v == bound) return;  // already saturated, like most cells of a place seen before
-      const int sum = (v == kUnknown ? 0 : v) + step;
-      s.set(*b, corner, i, static_cast<std::int16_t>(std::clamp<int>(sum, s.low, s.high)), changes);
-    };
-    for (std::size_t w = 0; w < b->miss.size(); ++w) b->miss[w] &= ~b->hit[w];
-    for_each_bit(b->hit, [&](std::uint32_t i) { add(i, s.hit, s.high); });
-    for_each_bit(b->miss, [&](std::uint32_t i) { add(i, s.miss, s.low); });
-    b->hit.fill(0);
-    b->miss.fill(0);
-    b->touched = false;
+  if (beams.empty()) return changes;
+  BlockId id = ~BlockId{0};
+  Block* block = nullptr;
+  const auto update = [&](BlockId of, std::uint32_t first, std::uint64_t eight) {
+    if (of != id) {
+      id = of;
+      block = &s.blocks.find_or_add(id);
+    }
+    for_each_mark(first, eight, [&](std::uint32_t i, bool hit) {
+      const std::int16_t v = block->log_odds[i];
+      if (v == (hit ? s.high : s.low)) return;  // saturated, like most cells of a place seen before
+      const int sum = (v == kUnknown ? 0 : v) + (hit ? s.hit : s.miss);
+      s.set(*block, corner_of(id), i, static_cast<std::int16_t>(std::clamp<int>(sum, s.low, s.high)),
+            changes);
+    });
+  };
+  constexpr double kMostCells = 1 << 25;  // 32 MiB
+  if (MarkGrid grid = grid_around(beams, s.marks); grid.cell_count() <= kMostCells) {
+    grid.mark(beams);
+    grid.for_each_row(update);
+  } else {
+    MarkedBlocks blocks;
+    blocks.mark(beams);
+    blocks.for_each_row(update);
   }
   sort_by_key(changes);
   return changes;

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "core_stack/mapping/occupancy/scan_marks.h"
 #include "core_stack/mapping/occupancy/voxel_blocks.h"
 
 namespace karst::core {
@@ -15,6 +16,7 @@ struct VoxelMap::Storage {
   std::size_t free_cells = 0, occupied_cells = 0;
   std::uint64_t revision = 0;
   std::shared_ptr<const FlightRegion> region;
+  std::vector<Mark> marks;  // all none between two scans, and kept because new memory costs time
 
   /// Sets a cell's value; updates the counts, the block's revision and the list of changes.
   void set(Block& b, const CellKey& corner, std::uint32_t local, std::int16_t value,

@@ -15,14 +15,38 @@ namespace karst::cave {
 using core::Vec3;
 using core::Vec3f;
 
+struct Corners {
+  Vec3 a, b, c;
+  Vec3 normal() const { return (b - a).cross(c - a).normalized(); }
+};
+
+/// A triangle as a ray needs it, in one place: its corners are scattered over the mesh's vertices, and its
+/// normal takes two square roots.
+struct RayTriangle {
+  Vec3f a, b, c, normal;  // normal: unit, on either side
+
+  Corners corners() const { return {a.cast<double>(), b.cast<double>(), c.cast<double>()}; }
+};
+
+static std::vector<RayTriangle> ray_triangles(const TriangleMesh& mesh) {
+  std::vector<RayTriangle> out;
+  out.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const auto& v = mesh.vertices;
+    RayTriangle triangle{v[t[0]], v[t[1]], v[t[2]], Vec3f::Zero()};
+    triangle.normal = triangle.corners().normal().cast<float>().normalized();
+    out.push_back(triangle);
+  }
+  return out;
+}
+
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-Hit to_hit(float range, std::uint32_t triangle, Vec3f normal, const Vec3f& direction) {
-  normal.normalize();
-  if (normal.dot(direction) > 0) normal = -normal;
-  return {range, triangle, normal};
+/// The unit normal, on the side that a ray in this direction comes from.
+Vec3f towards(const Vec3f& direction, const Vec3f& normal) {
+  return normal.dot(direction) > 0 ? Vec3f(-normal) : normal;
 }
 
 /// The nearer root of |o + t d - c| = r; from inside, the root where the ray leaves the ball.
@@ -33,18 +57,7 @@ void meet(const Sphere& s, const Ray& ray, float max_range_m, Hit& hit) {
   const double t = c > 0 ? -b - std::sqrt(disc) : -b + std::sqrt(disc);
   const auto range = static_cast<float>(t);
   if (t < 0 || range > max_range_m || range >= hit.range_m) return;
-  hit = to_hit(range, kBoulder, (o + t * d).cast<float>(), ray.direction);
-}
-
-struct Corners {
-  Vec3 a, b, c;
-  Vec3 normal() const { return (b - a).cross(c - a).normalized(); }
-};
-
-Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const auto& t = mesh.triangles[triangle];
-  const auto& v = mesh.vertices;
-  return {v[t[0]].cast<double>(), v[t[1]].cast<double>(), v[t[2]].cast<double>()};
+  hit = {range, kBoulder, towards(ray.direction, (o + t * d).cast<float>().normalized())};
 }
 
 // Embree selects candidate triangles, but never computes the answer. So that the rounding of one processor
@@ -55,10 +68,8 @@ Corners corners(const TriangleMesh& mesh, std::uint32_t triangle) {
 float slack_m(float extent_m) { return 1e-3f + 4e-6f * extent_m; }
 
 void box_of_triangle(const RTCBoundsFunctionArguments* args) {
-  const auto& mesh = *static_cast<const TriangleMesh*>(args->geometryUserPtr);
-  const auto& t = mesh.triangles[args->primID];
-  const Vec3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-  const Vec3f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+  const RayTriangle& t = static_cast<const RayTriangle*>(args->geometryUserPtr)[args->primID];
+  const Vec3f low = t.a.cwiseMin(t.b).cwiseMin(t.c), high = t.a.cwiseMax(t.b).cwiseMax(t.c);
   const float slack = slack_m(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff());
   RTCBounds& box = *args->bounds_o;
   box.lower_x = low.x() - slack;
@@ -78,49 +89,57 @@ struct PacketSearch {
   std::vector<double>* crossings;  // if not null: collects all ranges of a single ray instead
 };
 
-using Lanes = Eigen::Array<float, kPacket, 1>;
+/// One float per ray of a packet: a vector of the compiler, because Eigen's are no wider than the whole
+/// program's instruction set.
+using Lanes = float __attribute__((vector_size(kPacket * sizeof(float))));
+using LaneMask = std::int32_t __attribute__((vector_size(kPacket * sizeof(float))));
 
-struct LaneVectors {
-  Lanes x, y, z;
-
-  LaneVectors cross(const LaneVectors& o) const {
-    return {y * o.z - z * o.y, z * o.x - x * o.z, x * o.y - y * o.x};
-  }
-  Lanes dot(const LaneVectors& o) const { return x * o.x + y * o.y + z * o.z; }
-};
-
-/// Which rays of a whole packet may meet the triangle: all that do, and few others. The volumes of
+/// Marks the rays of a whole packet that may meet the triangle: all that do, and few others. The volumes of
 /// ray_triangle_range() in single precision: their error is below 12 epsilon |o a| |o b|, so signs that
 /// differ by more than `bound` differ in double precision as well.
-std::array<bool, kPacket> may_meet(const RTCRayN* rays, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
-  const auto lanes = [rays](int member) {
-    return Eigen::Map<const Lanes>(reinterpret_cast<const float*>(rays) + member * static_cast<int>(kPacket));
-  };
-  const LaneVectors o{lanes(0), lanes(1), lanes(2)}, d{lanes(4), lanes(5), lanes(6)};
-  const auto from = [&o](const Vec3f& p) -> LaneVectors { return {p.x() - o.x, p.y() - o.y, p.z() - o.z}; };
-  const LaneVectors oa = from(a), ob = from(b), oc = from(c);
-  const Lanes u = d.dot(oc.cross(ob)), v = d.dot(oa.cross(oc)), w = d.dot(ob.cross(oa));
-  const Lanes bound = 2e-6f * oa.dot(oa).max(ob.dot(ob)).max(oc.dot(oc));
-  const Eigen::Array<bool, kPacket, 1> mixed = u.min(v).min(w) < -bound && u.max(v).max(w) > bound;
-  std::array<bool, kPacket> may{};
-  for (unsigned k = 0; k < kPacket; ++k) may[k] = !mixed[k];
-  return may;
+[[gnu::always_inline]] inline void mark_candidates(const float* rays, const RayTriangle& t,
+                                                   std::int32_t* may) {
+  const Lanes* const member = reinterpret_cast<const Lanes*>(rays);  // aligned: RTCRayHit8
+  const Lanes ox = member[0], oy = member[1], oz = member[2];
+  const Lanes dx = member[4], dy = member[5], dz = member[6];
+  const Lanes ax = t.a.x() - ox, ay = t.a.y() - oy, az = t.a.z() - oz;
+  const Lanes bx = t.b.x() - ox, by = t.b.y() - oy, bz = t.b.z() - oz;
+  const Lanes cx = t.c.x() - ox, cy = t.c.y() - oy, cz = t.c.z() - oz;
+  const Lanes u = dx * (cy * bz - cz * by) + dy * (cz * bx - cx * bz) + dz * (cx * by - cy * bx);
+  const Lanes v = dx * (ay * cz - az * cy) + dy * (az * cx - ax * cz) + dz * (ax * cy - ay * cx);
+  const Lanes w = dx * (by * az - bz * ay) + dy * (bz * ax - bx * az) + dz * (bx * ay - by * ax);
+  const Lanes a2 = ax * ax + ay * ay + az * az, b2 = bx * bx + by * by + bz * bz,
+              c2 = cx * cx + cy * cy + cz * cz;
+  const Lanes ab2 = a2 > b2 ? a2 : b2, bound = 2e-6f * (ab2 > c2 ? ab2 : c2);
+  const LaneMask negative = (u < -bound) | (v < -bound) | (w < -bound),
+                 positive = (u > bound) | (v > bound) | (w > bound), neither = ~(negative & positive);
+  __builtin_memcpy(may, &neither, sizeof neither);
+}
+
+// The same arithmetic with eight lanes to an instruction where the processor has AVX2: no fused multiply-add,
+// so the marks are the same.
+[[gnu::target("avx2")]] void mark_candidates_by_avx2(const float* rays, const RayTriangle& t,
+                                                     std::int32_t* may) {
+  mark_candidates(rays, t, may);
+}
+void mark_candidates_by_sse(const float* rays, const RayTriangle& t, std::int32_t* may) {
+  mark_candidates(rays, t, may);
 }
 
 void meet_triangle(const RTCIntersectFunctionNArguments* args) {
+  static const auto mark = __builtin_cpu_supports("avx2") ? mark_candidates_by_avx2 : mark_candidates_by_sse;
   auto& search = *reinterpret_cast<PacketSearch*>(args->context);
-  const TriangleMesh& mesh = *static_cast<const TriangleMesh*>(args->geometryUserPtr);
+  const RayTriangle& triangle = static_cast<const RayTriangle*>(args->geometryUserPtr)[args->primID];
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
-  std::array<bool, kPacket> may;
-  may.fill(true);
-  if (args->N == kPacket) {
-    const auto& t = mesh.triangles[args->primID];
-    may = may_meet(rays, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-  }
+  std::array<std::int32_t, kPacket> may;
+  if (args->N == kPacket)
+    mark(reinterpret_cast<const float*>(rays), triangle, may.data());
+  else
+    may.fill(-1);
+  const Corners t = triangle.corners();
   for (unsigned k = 0; k < args->N; ++k) {
-    if (!args->valid[k] || !may[k]) continue;
-    const Corners t = corners(mesh, args->primID);
+    if (!(args->valid[k] & may[k])) continue;
     const Vec3 o(RTCRayN_org_x(rays, args->N, k), RTCRayN_org_y(rays, args->N, k),
                  RTCRayN_org_z(rays, args->N, k));
     const Vec3 d(RTCRayN_dir_x(rays, args->N, k), RTCRayN_dir_y(rays, args->N, k),
@@ -132,10 +151,10 @@ void meet_triangle(const RTCIntersectFunctionNArguments* args) {
       continue;
     }
     double& best = search.range_m[RTCRayN_id(rays, args->N, k)];
-    unsigned& triangle = RTCHitN_primID(hits, args->N, k);
-    if (*range > best || (*range == best && args->primID > triangle)) continue;
+    unsigned& met = RTCHitN_primID(hits, args->N, k);
+    if (*range > best || (*range == best && args->primID > met)) continue;
     best = *range;
-    triangle = args->primID;
+    met = args->primID;
     RTCHitN_geomID(hits, args->N, k) = args->geomID;
     const auto reach = static_cast<float>(best);
     RTCRayN_tfar(rays, args->N, k) = std::min(RTCRayN_tfar(rays, args->N, k), reach + slack_m(reach));
@@ -143,7 +162,7 @@ void meet_triangle(const RTCIntersectFunctionNArguments* args) {
 }
 
 struct NearestSearch {
-  const TriangleMesh* mesh;
+  const RayTriangle* triangles;
   Vec3 p;
   Nearest best;
   std::uint32_t triangle;
@@ -157,7 +176,7 @@ float query_radius(const Vec3& p, double distance_m) {
 
 bool visit_triangle(RTCPointQueryFunctionArguments* args) {
   auto& search = *static_cast<NearestSearch*>(args->userPtr);
-  const Corners t = corners(*search.mesh, args->primID);
+  const Corners t = search.triangles[args->primID].corners();
   const Vec3 q = closest_on_triangle(search.p, t.a, t.b, t.c);
   const double d = (q - search.p).norm();
   if (d > search.best.distance_m) return false;
@@ -170,12 +189,12 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 
 }  // namespace
 
-/// Also owns the mesh: Embree reads its triangles as long as the scene lives.
+/// Also owns the triangles, which Embree reads as long as the scene lives.
 struct RayScene::Handles {
-  explicit Handles(std::shared_ptr<const TriangleMesh> m) : mesh(std::move(m)) {
+  explicit Handles(const TriangleMesh& mesh) : triangles(ray_triangles(mesh)) {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(mesh->triangles.size()));
-    rtcSetGeometryUserData(g, const_cast<TriangleMesh*>(mesh.get()));
+    rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(triangles.size()));
+    rtcSetGeometryUserData(g, triangles.data());
     rtcSetGeometryBoundsFunction(
         g, [](const RTCBoundsFunctionArguments* args) { box_of_triangle(args); }, nullptr);
     rtcSetGeometryIntersectFunction(g, meet_triangle);
@@ -192,14 +211,14 @@ struct RayScene::Handles {
   Handles(const Handles&) = delete;
   Handles& operator=(const Handles&) = delete;
 
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::vector<RayTriangle> triangles;
   RTCDevice device = rtcNewDevice("threads=1");
   RTCScene scene = rtcNewScene(device);
 };
 
 RayScene::RayScene(TriangleMesh mesh)
     : mesh_(std::make_shared<const TriangleMesh>(std::move(mesh))),
-      handles_(std::make_shared<const Handles>(mesh_)) {}
+      handles_(std::make_shared<const Handles>(*mesh_)) {}
 
 RayScene RayScene::with_boulders(std::vector<Sphere> boulders) const {
   RayScene scene = *this;
@@ -240,8 +259,8 @@ void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<Hit>
       Hit& hit = out[first + k];
       hit = p.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID
                 ? Hit{}
-                : to_hit(static_cast<float>(search.range_m[k]), p.hit.primID[k],
-                         corners(*mesh_, p.hit.primID[k]).normal().cast<float>(), ray.direction);
+                : Hit{static_cast<float>(search.range_m[k]), p.hit.primID[k],
+                      towards(ray.direction, handles_->triangles[p.hit.primID[k]].normal)};
       for (const Sphere& s : boulders_) meet(s, ray, max_range_m, hit);
     }
   }
@@ -284,7 +303,7 @@ std::vector<double> RayScene::surfaces(const Ray& ray) const {
 }
 
 Nearest RayScene::nearest(const Vec3& p, double within_m) const {
-  NearestSearch search{mesh_.get(), p, {within_m, p, false}, 0};
+  NearestSearch search{handles_->triangles.data(), p, {within_m, p, false}, 0};
   RTCPointQuery query;
   query.x = static_cast<float>(p.x());
   query.y = static_cast<float>(p.y());

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core_stack/homing/path_home/home.h"
+#include "core_stack/mapping/occupancy/voxel_reader.h"
 #include "sdk/host/services/gain.h"
 #include "sdk/host/services/serving.h"
 
@@ -33,9 +34,10 @@ struct Services : Serving {
     return serve(h, e, [&](Session& s) {
       require_batch(count, KARST_MAX_BATCH, points, out);
       const core::VoxelMap& map = *snapshot(s, m).map;
+      core::VoxelReader reader(map);
       for (std::uint64_t i = 0; i < count; ++i) {
         require(finite(points[i]), "a point is not finite");
-        out[i] = static_cast<karst_cell_t>(map.at(to_core(points[i])));
+        out[i] = static_cast<karst_cell_t>(reader.at(map.key_of(to_core(points[i]))));
       }
     });
   }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+
+#include "core_stack/mapping/occupancy/voxel_reader.h"
 
 namespace karst::host {
 namespace {
@@ -58,9 +59,10 @@ karst_ray_end_t cast_ray(const core::VoxelMap& map, const karst_segment_t& ray, 
   CellKey end = map.key_of(from);
   // The result if traverse() visits no cell: it does not start far outside the world, where all is unknown.
   Cell stopped_by = through_unknown ? Cell::free : Cell::unknown;
+  core::VoxelReader reader(map);
   core::traverse(from, to, map.resolution_m(), [&](const CellKey& k) {
     end = k;
-    const Cell c = map.at(k);
+    const Cell c = reader.at(k);
     stopped_by = c == Cell::unknown && through_unknown ? Cell::free : c;
     return stopped_by == Cell::free;
   });
@@ -86,20 +88,30 @@ std::optional<karst_cell_counts_t> count_in_box(const core::VoxelMap& map, const
 }
 
 std::vector<karst_vec3_t> surface_in_box(const core::VoxelMap& map, const karst_box_t& box) {
-  std::vector<CellKey> surface;
   const KeyBox keys(box, map.resolution_m());
   if (keys.empty()) return {};
-  constexpr CellKey faces[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+  // One reader per direction: between neighbouring cells it stays in its block.
+  std::vector<core::VoxelReader> readers(core::kFaces.size(), core::VoxelReader(map));
+  // Cells as numbers in the order z, y, x: sorting them takes a third of the time that sorting keys takes.
+  const auto part = [](std::int32_t v) { return static_cast<std::uint64_t>(v + core::kWorldCells); };
+  std::vector<std::uint64_t> surface;
   map.for_each_in_box(keys.low_key(), keys.high_key(), [&](const CellKey& k, Cell c) {
-    const auto is_free = [&](const CellKey& face) { return map.at(k + face) == Cell::free; };
-    if (c == Cell::occupied && std::any_of(std::begin(faces), std::end(faces), is_free)) surface.push_back(k);
+    if (c != Cell::occupied) return;
+    for (std::size_t face = 0; face < readers.size(); ++face)
+      if (readers[face].at(k + core::kFaces[face]) == Cell::free) {
+        surface.push_back(part(k.z) << 32 | part(k.y) << 16 | part(k.x));
+        return;
+      }
   });
-  std::sort(surface.begin(), surface.end(), [](const CellKey& a, const CellKey& b) {
-    return std::tie(a.z, a.y, a.x) < std::tie(b.z, b.y, b.x);
-  });
+  std::sort(surface.begin(), surface.end());
   std::vector<karst_vec3_t> out;
   out.reserve(surface.size());
-  for (const CellKey& k : surface) out.push_back(to_abi(map.center_of(k)));
+  for (const std::uint64_t cell : surface) {
+    const auto coordinate = [cell](int shift) {
+      return static_cast<std::int32_t>(cell >> shift & 0xffff) - core::kWorldCells;
+    };
+    out.push_back(to_abi(map.center_of({coordinate(0), coordinate(16), coordinate(32)})));
+  }
   return out;
 }
 
