@@ -106,6 +106,25 @@ TEST(Insert, GivesTheSameMapAndChangesEveryTime) {
   EXPECT_EQ(run(), run());
 }
 
+/// A scan is marked in an array over its box, and otherwise where that would be too large.
+TEST(Insert, ARayFarFromTheOthersChangesNothingAboutThem) {
+  Random random(7);
+  VoxelMap map{scenes::octomap_options()}, with_far_ray{scenes::octomap_options()};
+  for (int i = 0; i < 3; ++i) {
+    std::vector<Ray> scan = scenes::random_scan(random, 3000, 8);
+    map.insert(scan);
+    scan.insert(scan.begin() + 1500, ray({3000.1f, 3000.1f, 500.1f}, {3002.1f, 3000.1f, 500.1f}));
+    with_far_ray.insert(scan);
+  }
+  EXPECT_EQ(with_far_ray.at(Vec3(3001, 3000.1, 500.1)), Cell::free);
+  EXPECT_EQ(with_far_ray.at(Vec3(3002.1, 3000.1, 500.1)), Cell::occupied);
+  EXPECT_EQ(with_far_ray.free_cells(), map.free_cells() + 10);
+  EXPECT_EQ(with_far_ray.occupied_cells(), map.occupied_cells() + 1);
+  EXPECT_GT(map.free_cells(), 1000u);
+  map.for_each_known(
+      [&](const CellKey& k, Cell, float log_odds) { ASSERT_EQ(with_far_ray.log_odds(k), log_odds); });
+}
+
 void insert_into(octomap::OcTree& tree, const std::vector<Ray>& rays, double max_range_m) {
   octomap::Pointcloud cloud;
   const Vec3f o = rays.front().origin;
