@@ -75,7 +75,7 @@ def select(args):
     if file.exists():
         sys.exit(f"{file}: what was proposed is written down already")
     left_out = experience_json(args, "--leave-one-out")
-    often = statistics.mode(choice["overall"]["contestant"] for choice in left_out["choices"])
+    often = statistics.mode(choice["overall_best"]["contestant"] for choice in left_out["choices"])
     turns = itertools.cycle(campaign.conditions(args))
     choices = []
     for cave, (condition, vehicle, battery) in zip(caves(args), turns):

@@ -82,6 +82,14 @@ std::vector<Beam> distinct_beams(std::span<const Ray> rays, double cells_per_m) 
   return out;
 }
 
+/// The number of steps from cell to cell along all beams.
+double steps_of(std::span<const Beam> beams) {
+  double steps = 0;
+  for (const Beam& b : beams)
+    steps += std::abs(b.last.x - b.first.x) + std::abs(b.last.y - b.first.y) + std::abs(b.last.z - b.first.z);
+  return steps;
+}
+
 MarkGrid grid_around(std::span<const Beam> beams, std::vector<Mark>& cells) {
   CellKey low = beams.front().first, high = low;
   for (const Beam& b : beams)
@@ -115,8 +123,10 @@ std::vector<CellChange> VoxelMap::insert(std::span<const Ray> rays) {
             changes);
     });
   };
-  constexpr double kMostCells = 1 << 25;  // 32 MiB
-  if (MarkGrid grid = grid_around(beams, s.marks); grid.cell_count() <= kMostCells) {
+  // The array's time grows with its box, that of single blocks with the beams: few long beams take blocks.
+  constexpr double kMostCells = 1 << 25, kMostCellsAStep = 6;  // 32 MiB
+  if (MarkGrid grid = grid_around(beams, s.marks);
+      grid.cell_count() <= std::min(kMostCells, kMostCellsAStep * steps_of(beams))) {
     grid.mark(beams);
     grid.for_each_row(update);
   } else {

@@ -92,7 +92,9 @@ void finish_trial(const Flying& f, const TrialJob& job, const ProcessEnd& end,
   std::error_code error;
   write_note(f.folder, {end, machine_name(), job.identity});
   fs::create_directories(job.run_dir.parent_path(), error);
-  if (!is_flown(job)) {
+  fs::rename(f.folder, job.run_dir, error);  // fails if there is a flight already
+  if (!error) return;
+  if (!is_flown(job)) {  // but one of another build
     fs::remove_all(job.run_dir, error);
     fs::rename(f.folder, job.run_dir, error);
     if (!error) return;
@@ -186,7 +188,7 @@ TrialNote read_note(const fs::path& run_dir) {
 
 bool is_flown(const TrialJob& job) {
   try {
-    return fs::exists(job.run_dir) && read_note(job.run_dir).identity == job.identity;
+    return read_note(job.run_dir).identity == job.identity;
   } catch (const InputError&) {
     return false;
   }

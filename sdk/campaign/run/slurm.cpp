@@ -29,6 +29,7 @@ constexpr std::size_t kTasksOfArray = 1000;  // Slurm's default MaxArraySize is 
 constexpr std::size_t kTasksWaiting = 500;   // so many at least: nodes that become free find one
 constexpr int kLooksAPoll = 6;               // the queue is asked less often than the folder by this factor
 constexpr int kRest = 20;  // asking takes at most a twentieth of the time, however slow the controller is
+constexpr auto kLongestRest = std::chrono::seconds(60);
 constexpr auto kSilence = std::chrono::seconds(30);   // then it is said why nothing runs
 constexpr auto kTryAgain = std::chrono::seconds(30);  // to submit
 
@@ -92,7 +93,8 @@ class Submission {
     const auto begin = Clock::now();
     const std::optional<TaskStates> states = ask_queue(tasks_.arrays());
     const auto end = Clock::now();
-    next_poll_ = end + std::max<Clock::duration>(queue_poll(), kRest * (end - begin));
+    const Clock::duration rest = std::min<Clock::duration>(kRest * (end - begin), kLongestRest);
+    next_poll_ = end + (states ? std::max(queue_poll(), rest) : queue_poll());
     if (!states && !is_mute_) say("squeue does not answer; waits for it");
     is_mute_ = !states;
     if (states) tasks_.take(*states);

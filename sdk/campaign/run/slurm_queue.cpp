@@ -1,5 +1,7 @@
 #include "sdk/campaign/run/slurm_queue.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -39,6 +41,15 @@ std::string without_blanks(std::string text) {
   return text.substr(std::min(text.find_first_not_of(' '), text.size()));
 }
 
+/// `env -u` for each variable by which a user filters what squeue prints, such as SQUEUE_PARTITION.
+std::vector<std::string> without_own_settings() {
+  std::vector<std::string> argv{slurm_program("env")};
+  for (char** variable = environ; *variable; ++variable)
+    if (const std::string_view v = *variable; v.starts_with("SQUEUE_"))
+      argv.insert(argv.end(), {"-u", std::string(v.substr(0, v.find('=')))});
+  return argv;
+}
+
 InputError complaint(const std::string& name, const ProcessOutput& output) {
   const std::string said = without_blanks(output.out);
   return InputError("slurm", name, describe(output.end) + (said.empty() ? "" : ": " + said));
@@ -57,6 +68,16 @@ bool TaskState::is_over() const {
       std::to_array<std::string_view>({"BOOT_FAIL", "CANCELLED", "COMPLETED", "DEADLINE", "FAILED",
                                        "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED", "REVOKED", "TIMEOUT", ""});
   return std::find(kOver.begin(), kOver.end(), state) != kOver.end();
+}
+
+bool TaskState::gave_up() const {
+  constexpr int kNotLaunched = 53;  // what Slurm gives as the signal, such as where a folder is missing
+  return state == "BOOT_FAIL" ||
+         (state == "FAILED" && (signal == 0 || signal == kNotLaunched || reason == "JobLaunchFailure"));
+}
+
+bool TaskState::is_innocent() const {
+  return gave_up() || state == "NODE_FAIL" || state == "PREEMPTED" || state == "COMPLETED" || state.empty();
 }
 
 std::string TaskState::text() const {
@@ -84,11 +105,16 @@ TaskStates read_queue(const std::string& printed) {
 
 std::optional<TaskStates> ask_queue(const std::set<std::string>& arrays) {
   if (arrays.empty()) return TaskStates{};
-  const ProcessOutput queue = run_process({slurm_program("squeue"), "--noheader", "--array", "--states=all",
-                                           "--jobs=" + joined(arrays), std::string("--Format=") + kFormat},
-                                          kCommand_s);
-  if (failed(queue) && queue.out.find(kForgotten) == std::string::npos) return std::nullopt;
-  return read_queue(queue.out);
+  std::vector<std::string> argv = without_own_settings();
+  argv.insert(argv.end(), {slurm_program("squeue"), "--noheader", "--array", "--states=all",
+                           "--jobs=" + joined(arrays), std::string("--Format=") + kFormat});
+  const ProcessOutput queue = run_process(argv, kCommand_s);
+  const bool forgotten = queue.out.find(kForgotten) != std::string::npos;
+  if (failed(queue) && !forgotten) return std::nullopt;
+  TaskStates states = read_queue(queue.out);
+  if (states.empty() && !forgotten && !without_blanks(queue.out).empty())
+    throw InputError("slurm", "squeue", "its answer is not understood: " + without_blanks(queue.out));
+  return states;
 }
 
 std::string submit_array(const std::vector<std::string>& sbatch_arguments) {

@@ -22,8 +22,10 @@ struct TaskState {
   int restarts = 0;  // by Slurm itself: the node was lost, or the task gave up its place
   int exit_code = 0, signal = 0;
   bool is_over() const;
-  /// The program itself gave up; it does not do that because of a trial.
-  bool gave_up() const { return state == "FAILED" && signal == 0; }
+  /// The task could not begin, or its program itself gave up; that does not happen because of a trial.
+  bool gave_up() const;
+  /// How it ended says nothing about its trials: it gave up, lost its node or its place, or ended well.
+  bool is_innocent() const;
   /// "OUT_OF_MEMORY on node3"
   std::string text() const;
 };
@@ -33,7 +35,8 @@ using TaskStates = std::map<TaskId, TaskState>;
 /// What `squeue` printed as it is asked here. Lines that are none are skipped.
 TaskStates read_queue(const std::string& printed);
 
-/// The tasks of these arrays that Slurm knows; none if the controller does not answer.
+/// The tasks of these arrays that Slurm knows; none if the controller does not answer. Throws
+/// core::InputError if the answer is not understood.
 std::optional<TaskStates> ask_queue(const std::set<std::string>& arrays);
 
 /// Submits an array by `sbatch` and returns its number. Throws core::InputError with what sbatch said.

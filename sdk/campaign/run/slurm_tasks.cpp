@@ -35,6 +35,7 @@ std::set<std::string> names_in(const fs::path& folder) {
 std::string label(const TaskId& id) { return id.first + "_" + std::to_string(id.second); }
 
 void record_lost(const TrialJob& job, const std::string& how) {
+  fs::remove_all(job.run_dir);  // what another build flew there is no part of this result
   fs::create_directories(job.run_dir);
   std::ofstream(job.run_dir / kLogFile)
       << "its Slurm task ended without it, " << kAttempts << " times: " << how << "\n";
@@ -114,15 +115,15 @@ void SlurmTasks::settle(bool states_are_new) {
 }
 
 void SlurmTasks::give_up(SlurmTask& task) {
-  if (task.last.state == "COMPLETED") {  // then this machine does not see them yet
+  if (task.last.state == "COMPLETED" || task.last.state.empty()) {  // then they may be seen later here
     if (task.over == Clock::time_point{}) task.over = Clock::now();
     if (std::chrono::duration<double>(Clock::now() - task.over).count() < late_s_) return;
   }
   if (task.last.state == "CANCELLED")
     throw InputError("slurm", "task " + label(task.id),
                      "was cancelled by somebody; the same command goes on where it was");
-  if (task.last.gave_up()) {
-    nodes_of_failures_.insert(task.last.node);
+  if (task.last.gave_up()) nodes_of_failures_.insert(task.last.node);
+  if (task.last.is_innocent()) {
     if (task.attempt >= kAttempts) {
       const std::string said = last_line(task.log);
       throw InputError("slurm", "task " + label(task.id),

@@ -34,7 +34,8 @@ class StandInSlurm {
     write_program(dir / "bin" / "sbatch", "echo \"$*\" >> " + (dir / "asked").string() + "; n=$(wc -l < " +
                                               (dir / "asked").string() + "); mv " + (dir / "flown").string() +
                                               "/$n/* " + trials.string() + " 2>/dev/null; echo $n\n");
-    write_program(dir / "bin" / "squeue", "cat " + (dir / "queue").string() + " 2>/dev/null; : > " +
+    write_program(dir / "bin" / "squeue", "[ -z \"$SQUEUE_PARTITION\" ] || exit 0; cat " +
+                                              (dir / "queue").string() + " 2>/dev/null; : > " +
                                               (dir / "polled").string() + "\n");
     write_program(dir / "bin" / "scancel", "echo \"$*\" >> " + (dir / "cancelled").string() + "\n: > " +
                                                (dir / "queue").string() + "\n");
@@ -75,6 +76,8 @@ TEST(Slurm, ATrialThatIsLostTwiceIsAFailedOneAndTakesNoneWithIt) {
     std::ofstream(flown / "metrics.json") << "{\"outcome\": \"landed\", \"coverage\": 0.5}";
     write_note(flown, {{0, 0, false, 1}, "node", jobs[i].identity});
   }
+  std::ofstream(dir / "queue") << "1|0|OUT_OF_MEMORY|0|0|node1|None|\n2|0|COMPLETED|0|0|node1|None|\n"
+                                  "2|1|OUT_OF_MEMORY|0|0|node1|None|\n";
   SlurmOptions options;
   options.folder = dir;
   options.karst = "/bin/karst";
@@ -209,6 +212,41 @@ TEST(Slurm, ANodeThatFliesNothingGetsNoMoreTasks) {
   flights.join();
   EXPECT_TRUE(says(text_of(s.dir / "asked"), "--exclude=node2")) << text_of(s.dir / "asked");
   EXPECT_TRUE(says(s.said, "no further tasks for node2")) << s.said;
+}
+
+/// Slurm gives 53 as the signal of a task that it could not begin.
+TEST(Slurm, ANodeThatCannotBeginATaskIsNoFailureOfItsTrial) {
+  OnStandIn s("slurm_no_folder",
+              "1|0|FAILED|4021|0|node7|JobLaunchFailure|\n2|0|FAILED|4021|0|node7|JobLaunchFailure|\n");
+  s.jobs.resize(1);
+  const std::string error = error_of([&] { s.run(); });
+  EXPECT_TRUE(says(error, "could not fly its trials")) << error;
+  EXPECT_FALSE(is_flown(s.jobs[0]));
+}
+
+TEST(Slurm, TasksThatSlurmDoesNotKnowAreNoFailedTrials) {
+  OnStandIn s("slurm_forgotten", "");
+  s.jobs.resize(1);
+  s.options.late_s = 0.3;
+  const std::string error = error_of([&] { s.run(); });
+  EXPECT_TRUE(says(error, "how is not known any more")) << error;
+  EXPECT_FALSE(is_flown(s.jobs[0]));
+}
+
+TEST(Slurm, AnAnswerThatIsNotUnderstoodStopsTheCampaign) {
+  OnStandIn s("slurm_strange", "JOBID STATE\n1_0 R\n");
+  const std::string error = error_of([&] { s.run(); });
+  EXPECT_TRUE(says(error, "its answer is not understood: JOBID STATE")) << error;
+  EXPECT_FALSE(is_flown(s.jobs[0]));
+}
+
+TEST(Slurm, WhatAUserFiltersFromSqueueIsSeenAllTheSame) {
+  OnStandIn s("slurm_filtered", "1|0|CANCELLED|0|0|node1|None|\n");
+  s.jobs.resize(1);
+  setenv("SQUEUE_PARTITION", "other", 1);
+  const std::string error = error_of([&] { s.run(); });
+  unsetenv("SQUEUE_PARTITION");
+  EXPECT_TRUE(says(error, "was cancelled by somebody")) << error;
 }
 
 TEST(Slurm, ReadsHowTasksAre) {
