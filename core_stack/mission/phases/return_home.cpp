@@ -133,10 +133,14 @@ void ReturnHome::find_path() {
 
 int ReturnHome::max_failures() const { return wiring_.in_company() ? kMaxFailuresInCompany : kMaxFailures; }
 
-/// Whether a vehicle whose cameras see one side has just set out from here, and come to rest again.
+/// Whether it has set out as it came, and got no farther than here.
+bool ReturnHome::stands_where_it_set_out() const {
+  return set_out_from_ && (onboard_.flight.reference().position - *set_out_from_).norm() < kSamePlace_m;
+}
+
+/// The same of a vehicle whose cameras see one side: it may see more by turning.
 bool ReturnHome::blocked_on_the_way_back() const {
-  return !onboard_.vehicle.lidar && set_out_from_ &&
-         (onboard_.flight.reference().position - *set_out_from_).norm() < kSamePlace_m;
+  return !onboard_.vehicle.lidar && stands_where_it_set_out();
 }
 
 /// What is in the way may have left since the cameras looked there: afterwards one more plan is made. To look
@@ -161,38 +165,75 @@ void ReturnHome::watch_patience(bool at_home) {
   wiring_.land_here(kReason);
 }
 
+/// Whether the battery lasts for flying `length_m` home and landing there, with the margin for what slows it
+/// down.
+bool ReturnHome::lasts_for(double length_m, double seconds_left) const {
+  const MissionOptions& o = onboard_.options.mission;
+  const double ground_z_m = onboard_.vehicle.T_world_start.position.z();
+  const double time_s =
+      home_time_s(length_m, ground_z_m, home_.z(), onboard_.options.motion, o.landing_speed_mps);
+  return home_slack_s(seconds_left, time_s, o.home_margin, 0) >= 0;
+}
+
+/// Plans through the map. A passage that has closed in the map may leave only a long way round: where the
+/// battery does not last for it, the vehicle flies back as it came, if that is shorter.
 void ReturnHome::plan() {
   planning_ = true;
   const TimeNs begun = onboard_.now();
+  const bool may_fly_as_come = !landing_spot() && !stands_where_it_set_out();
   onboard_.map.job(
       "home plan", kPlanningBudget,
-      [this, start = start(begun + kPlanningBudget), to = hover()](Explorer& explorer) {
-        Route route;
-        route.path = explorer.plan_to(start.committed.points.back(), to);
-        if (!route.path.found()) return route;
-        return make_route(explorer.map(), onboard_.options, onboard_.vehicle, start, route.path, {});
+      [this, start = start(begun + kPlanningBudget), to = hover(),
+       flown = may_fly_as_come ? parts_.flown_path.points() : std::vector<Vec3>{},
+       seconds_left = parts_.endurance.seconds_left(begun)](Explorer& explorer) mutable {
+        WayHome way;
+        const Vec3 from = start.committed.points.back();
+        Path path = explorer.plan_to(from, to);
+        if (!path.found()) {
+          way.route.path = std::move(path);
+          return way;
+        }
+        if (!flown.empty() && !lasts_for(path_length_m(path.points), seconds_left)) {
+          flown.push_back(from);
+          const Path back{.points = explorer.path_back(flown)};
+          way.as_come = path_length_m(back.points) < path_length_m(path.points);
+          if (way.as_come) path = back;
+        }
+        if (way.as_come) start.at = 0;  // no polynomial for it
+        way.route = make_route(explorer.map(), onboard_.options, onboard_.vehicle, start, path, {});
+        return way;
       },
-      [this, begun](const Route& route) { on_plan(route, begun); });
+      [this, begun](const WayHome& way) { on_plan(way, begun); });
 }
 
-void ReturnHome::on_plan(const Route& route, TimeNs begun) {
+void ReturnHome::on_plan(const WayHome& way, TimeNs begun) {
   planning_ = false;
   const TimeNs now = onboard_.now();
   PathExecution& path = parts_.path;
   if (!parts_.phases.in(Phase::home) || path.outdated(begun)) return;
-  if (route.path.found()) {
+  if (way.as_come) return follow_as_come(way.route, "the battery does not last for the path through the map");
+  if (way.route.path.found()) {
     failures_ = 0;
-    return path.follow(route, now);
+    return path.follow(way.route, now);
   }
   ++failures_;
   if (wiring_.in_company()) retry_ = now + kAgain;  // the other vehicle makes room
   path.block();
   path.take_no_detour();
-  onboard_.recorder.write(now, event::Log{"no path home: " + route.path.reason});
+  onboard_.recorder.write(now, event::Log{"no path home: " + way.route.path.reason});
   path.stop(now);
 }
 
-/// Flies back along the flown path, which was passed without contact.
+/// Follows the flown path, which was passed without contact.
+void ReturnHome::follow_as_come(const Route& route, const std::string& why) {
+  const TimeNs now = onboard_.now();
+  onboard_.recorder.write(now, event::Safety{SafetyAction::home, why + ": back the way it came"});
+  parts_.path.follow(route, now);
+  parts_.path.fly_as_come();
+  set_out_from_ = onboard_.flight.reference().position;
+  failures_ = onboard_.vehicle.lidar ? 0 : max_failures() - 1;
+}
+
 void ReturnHome::fly_back_as_come() {
   planning_ = true;
   const TimeNs begun = onboard_.now();
@@ -210,13 +251,7 @@ void ReturnHome::fly_back_as_come() {
       [this, begun](const Route& route) {
         planning_ = false;
         if (!parts_.phases.in(Phase::home) || parts_.path.outdated(begun)) return;
-        const TimeNs now = onboard_.now();
-        onboard_.recorder.write(
-            now, event::Safety{SafetyAction::home, "no path through the map: back the way it came"});
-        parts_.path.follow(route, now);
-        parts_.path.fly_as_come();
-        set_out_from_ = onboard_.flight.reference().position;
-        failures_ = onboard_.vehicle.lidar ? 0 : max_failures() - 1;
+        follow_as_come(route, "no path through the map");
       });
 }
 

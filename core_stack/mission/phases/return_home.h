@@ -55,12 +55,19 @@ class ReturnHome {
   double distance_m() const { return distance_m_; }
 
  private:
+  struct WayHome {
+    Route route;
+    bool as_come = false;  // along the flown path
+  };
   void on_estimate(const HomeEstimate& estimate);
   bool leads_too_far(const HomeEstimate& estimate);
   void arrive();
   void find_path();
+  bool lasts_for(double length_m, double seconds_left) const;
   void plan();
-  void on_plan(const Route& route, TimeNs begun);
+  void on_plan(const WayHome& way, TimeNs begun);
+  void follow_as_come(const Route& route, const std::string& why);
+  bool stands_where_it_set_out() const;
   bool blocked_on_the_way_back() const;
   void look_around();
   int max_failures() const;

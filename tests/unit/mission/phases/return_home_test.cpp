@@ -1,7 +1,9 @@
 #include "core_stack/mission/phases/return_home.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "tests/unit/mission/drawn_map.h"
 #include "tests/unit/mission/onboard_fixture.h"
 
 namespace karst::core {
@@ -60,6 +62,48 @@ TEST_F(ReturnHomeTest, WithoutAWayThroughTheMapItFliesBackAsItCameAndLandsAtHome
   EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
   EXPECT_GE(told("no path home"), 3u);
   EXPECT_EQ(told("back the way it came"), 1u);
+}
+
+/// A ring of corridors; the side between the vehicle and home has come to look too tight for the usual
+/// clearance since the vehicle flew through it.
+class TightWayHomeTest : public ReturnHomeTest {
+ protected:
+  void fly_home_from_the_far_end(double seconds_left) {
+    Explorer& explorer = onboard.map.while_idle();
+    const auto carve = [&](const Vec3& low, const Vec3& high, const std::vector<std::string>& open) {
+      explorer.integrate(box_rays(explorer.map(), low, high, open));
+    };
+    carve({-2, -2, -1}, {5, 2, 3}, {"x+", "y+"});
+    carve({5, -0.5, -1}, {7, 0.5, 3}, {"x-", "x+"});
+    carve({7, -2, -1}, {14, 2, 3}, {"x-", "y+"});
+    carve({-2, 2, -1}, {2, 14, 3}, {"y-", "x+"});
+    carve({10, 2, -1}, {14, 14, 3}, {"y-", "x-"});
+    carve({2, 10, -1}, {10, 14, 3}, {"x-", "x+"});
+    endurance.note({.seconds_left = seconds_left});
+    explore_and_go_home(12);
+    steps(60, [this] {
+      greatest_y_m = std::max(greatest_y_m, onboard.flight.reference().position.y());
+      return phases.in(Phase::land);
+    });
+  }
+  double greatest_y_m = 0;
+};
+
+// As it was: a passage closed in the map on the way home, and the battery ended on the long way round.
+TEST_F(TightWayHomeTest, WhereTheBatteryDoesNotLastForTheLongWayRoundItFliesBackAsItCame) {
+  fly_home_from_the_far_end(20);
+  EXPECT_EQ(told("the battery does not last for the path through the map: back the way it came"), 1u);
+  EXPECT_LT(greatest_y_m, 1);
+  EXPECT_EQ(landed, "");
+  EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
+}
+
+TEST_F(TightWayHomeTest, WhereTheBatteryLastsItFliesTheLongWayRound) {
+  fly_home_from_the_far_end(200);
+  EXPECT_EQ(told("back the way it came"), 0u);
+  EXPECT_GT(greatest_y_m, 10);
+  EXPECT_EQ(landed, "");
+  EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
 }
 
 class CameraReturnHomeTest : public ReturnHomeTest {
