@@ -12,6 +12,7 @@
 #include "sdk/selection/describe.h"
 #include "sdk/selection/free_space.h"
 #include "sdk/selection/goal.h"
+#include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
 #include "sdk/selection/select.h"
@@ -23,6 +24,10 @@ namespace {
 using boost::property_tree::ptree;
 using core::InputError;
 using selection::Source;
+
+constexpr const char* kOtherwise = "policy.auto.otherwise=";
+// Where no experience is at hand: the best on average of the shipped one (docs/results/selection_value.md).
+constexpr const char* kBestAsShipped = "deep_cave";
 
 void take(Mission& m, const std::string& policy, const ptree& parameters, const std::string& why) {
   m.policy = policy;
@@ -89,7 +94,7 @@ std::string own_mesh_settings(const Mission& m, const AutoOptions& o) {
   const auto setting = [](const std::string& text) { return " --set " + core::shell_word(text); };
   return setting("policy.auto.survey=" + m.cave) +
          (m.start.empty() ? "" : setting("policy.auto.survey_start=" + m.start)) +
-         (o.otherwise.empty() ? setting("policy.auto.otherwise=nearest_frontier") : "");
+         (o.otherwise.empty() ? setting(kOtherwise + std::string(kBestAsShipped)) : "");
 }
 
 std::string nothing_known(const Mission& m, const AutoOptions& o) {
@@ -181,11 +186,13 @@ void choose_policy(Mission& m) {
       selection::select(e, figures, o.select, m.file,
                         o.survey.empty() ? "" : selection::mesh_hash_of(o.survey, o.survey_start));
   if (s.refused) {
-    if (o.otherwise.empty() || o.otherwise == kAutoPolicy)
+    if (o.otherwise.empty() || o.otherwise == kAutoPolicy) {
+      const auto best = selection::best_on_average(e, selection::metric_of(e, o.select.metric, m.file));
       throw InputError(m.file, "policy.auto",
-                       s.reason +
-                           "; for such caves policy.auto.otherwise can name a policy: --set "
-                           "policy.auto.otherwise=nearest_frontier");
+                       s.reason + "; for such caves policy.auto.otherwise can name a policy, such as what did " +
+                           "best on average: --set " + kOtherwise +
+                           (best.empty() ? kBestAsShipped : e.contestants[best.front()].policy));
+    }
     return take(m, o.otherwise, {}, "otherwise: " + s.reason);
   }
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];

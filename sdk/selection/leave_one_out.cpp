@@ -234,6 +234,10 @@ std::size_t caves_with(const Experience& e, std::size_t m) {
 
 }  // namespace
 
+std::vector<std::size_t> best_on_average(const Experience& e, std::size_t metric) {
+  return best_on_average(e, {metric}, [](std::size_t) { return true; });
+}
+
 std::vector<std::string> goals_flown(const Experience& e) {
   std::vector<std::string> out;
   for (const Goal& g : goals()) {

@@ -59,6 +59,11 @@ std::string confidence_in_words(const Experience& e, const Selected& s) {
   return out;
 }
 
+std::string best_on_average_in_words(const Experience& e, std::size_t best, const std::string& metric) {
+  return "On average over the " + core::counted(e.caves.size(), "cave") + " flown, " + e.contestants[best].name +
+         " did best in " + metric_words(metric) + ": a choice where nothing tells more";
+}
+
 std::string runner_up_in_words(const Experience& e, const Selected& s, const std::string& metric) {
   if (s.ranking.size() < 2) return "";
   const Expected &first = s.ranking[0], &second = s.ranking[1];

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "core_stack/common/counted.h"
@@ -71,6 +72,13 @@ void print_sentences(const std::string& text) {
   print_out("%s\n", wrapped(text, columns > 0 ? columns : kColumnsOfAFile, 2).c_str());
 }
 
+std::optional<std::size_t> best_on_average(const Experience& e, const std::string& metric,
+                                           const std::string& source) {
+  const std::vector<std::size_t> order =
+      selection::best_on_average(e, selection::metric_of(e, metric, source));
+  return order.empty() ? std::nullopt : std::optional(order.front());
+}
+
 void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
            const SelectArguments& args) {
   const std::string goal = selection::goal_of(args.options.metric);
@@ -88,6 +96,8 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   }
   if (s.refused) {
     print_sentences("No policy is named: " + core::unit_text(s.reason) + ".");
+    if (const auto best = best_on_average(e, args.options.metric, args.cave))
+      print_sentences(selection::best_on_average_in_words(e, *best, args.options.metric) + ".");
     return;
   }
   const std::string& metric = args.options.metric;
@@ -151,7 +161,15 @@ ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, co
          {"weight", n.weight},
          {"most_unlike_in",
           selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)].name}});
-  if (s.refused) return j;
+  if (s.refused) {
+    if (const auto best = best_on_average(e, args.options.metric, args.cave)) {
+      const selection::Preset& otherwise = e.contestants[*best];
+      j["best_on_average"] = {{"contestant", otherwise.name},
+                              {"policy", otherwise.policy},
+                              {"parameters", parameters_json(otherwise)}};
+    }
+    return j;
+  }
   const selection::Preset& first = e.contestants[s.ranking.front().contestant];
   j["policy"] = first.policy;
   j["parameters"] = parameters_json(first);

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Tunes two parameters of each policy in four caves that the selection campaign does not use, and leaves the presets
-# where that campaign takes them as contestants: all its caves are held out, then.
+# Tunes two parameters of each policy in four caves that the selection campaign does not use, and says what they are
+# worth in seven of that campaign, one of each kind. The presets are left where the campaign takes them as contestants:
+# all its caves are held out.
 #   tests/benchmark/selection_tune.sh KARST CAMPAIGN_FOLDER FOLDER [FLIGHTS]
 # Started again, it goes on.
 set -eu
@@ -8,10 +9,14 @@ karst=$1 campaign=$2 folder=$3 flights=${4:-32}
 here=$(dirname "$0")
 python3 "$here/selection_campaign.py" caves "$folder" --karst "$karst" --seed 500000 --of-each 1 \
   --kinds gallery branches halls alpine
+held_out=""
+for kind in tube gallery meander alpine branches maze halls; do
+  held_out="$held_out $campaign/caves/${kind}1.info"
+done
 mkdir -p "$campaign/tuned"
 while read -r policy first second; do
   echo "$policy: $first, $second"
-  "$karst" tune "$policy" --parameter "$first" --parameter "$second" --caves "$folder"/caves/*.info --seeds 1 \
+  "$karst" tune "$policy" --parameter "$first" --parameter "$second" --caves "$folder"/caves/*.info --held-out $held_out --seeds 1 \
     --time "3 min" --set simulator.battery_minutes="3 min" --flights "$flights" --any-binary --quiet \
     --out "$folder/$policy" > "$folder/$policy.txt"
   if [ -f "$folder/$policy/preset.info" ]; then

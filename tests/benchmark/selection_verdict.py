@@ -154,7 +154,8 @@ def table(args):
     for goal, metric in GOALS.items():
         print(f"{goal} ({metric}), {len(choices)} caves")
         print(f"  {'cave':24} {'condition':16} {'proposed':>30} {'default':>10} {'overall best':>13}")
-        against = {"default": [], "overall": []}
+        against = {"proposed against the default": [], "proposed against the overall best": [],
+                   "proposed, or the overall best where it refuses, against the default": []}
         for choice in choices:
             values = means(args, choice, metric)
             name = choice["proposed"][goal]["contestant"]
@@ -162,11 +163,12 @@ def table(args):
             print(f"  {Path(choice['cave']).stem:24} {choice['condition']:16} {name:>21} {mine:8.3f} {default:10.3f} "
                   f"{overall:13.3f}")
             # As logarithms of ratios: caves and depths have very different sizes.
-            against["default"].append(math.log(max(mine, 1e-9) / max(default, 1e-9)))
-            against["overall"].append(math.log(max(mine, 1e-9) / max(overall, 1e-9)))
-        for other, logs in against.items():
+            otherwise = overall if "refused" in choice["proposed"][goal] else mine
+            for logs, (one, other) in zip(against.values(), [(mine, default), (mine, overall), (otherwise, default)]):
+                logs.append(math.log(max(one, 1e-9) / max(other, 1e-9)))
+        for what, logs in against.items():
             mean, low, high, p = paired(logs)
-            print(f"  proposed against the {other}{' best' if other == 'overall' else ''}: {100 * math.expm1(mean):+.1f} % "
+            print(f"  {what}: {100 * math.expm1(mean):+.1f} % "
                   f"(95 % {100 * math.expm1(low):+.1f} to {100 * math.expm1(high):+.1f}, p {p:.3g}), better in "
                   f"{sum(x > 0 for x in logs)}, the same in {sum(x == 0 for x in logs)}, worse in {sum(x < 0 for x in logs)}")
 

@@ -162,7 +162,7 @@ TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   EXPECT_EQ(nothing.code, 1);
   EXPECT_TRUE(nothing.says("nothing is known of the cave")) << nothing.text;
   const std::string own_mesh =
-      " --set policy.auto.survey=" + cave + " --set policy.auto.otherwise=nearest_frontier";
+      " --set policy.auto.survey=" + cave + " --set policy.auto.otherwise=deep_cave";
   EXPECT_TRUE(nothing.says("to use the cave's own mesh:" + own_mesh)) << nothing.text;
   const Output as_said = run_karst(fly + own_mesh + " --check " + (dir / "as_said.info").string());
   EXPECT_EQ(as_said.code, 0) << as_said.text;
@@ -178,7 +178,7 @@ TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   const Output wide = run_karst(fly + out + " --set policy.auto.description=" + (dir / "wide.info").string());
   EXPECT_EQ(wide.code, 1);
   EXPECT_TRUE(wide.says("most unlike is its width: 80 m")) << wide.text;
-  EXPECT_TRUE(wide.says("--set policy.auto.otherwise=nearest_frontier")) << wide.text;
+  EXPECT_TRUE(wide.says("what did best on average: --set policy.auto.otherwise=unknown_ratio")) << wide.text;
   EXPECT_FALSE(fs::exists(dir / "run"));
   const Output otherwise =
       run_karst(fly + " --set policy.auto.otherwise=nearest_frontier --set policy.auto.description=" +

@@ -344,6 +344,21 @@ TEST(Select, RefusesWhatIsUnlikeAllThatWasFlownAndNamesWhy) {
   EXPECT_GT(s.near.front().distance.value, s.limit);
 }
 
+TEST(Select, WhatDidBestOnAverageHasTheGreatestMeanShareOfTheBestOfEachCave) {
+  const Experience e = experience(12, 0.3, 0.2, 3);
+  std::vector<double> share(e.contestants.size(), 0.0);
+  for (std::size_t s = 0; s < e.sites.size(); ++s) {
+    double most = 0;
+    for (std::size_t k = 0; k < share.size(); ++k) most = std::max(most, e.at(k, s, 0).mean);
+    for (std::size_t k = 0; k < share.size(); ++k) share[k] += e.at(k, s, 0).mean / most;
+  }
+  const auto best = static_cast<std::size_t>(std::max_element(share.begin(), share.end()) - share.begin());
+  const std::vector<std::size_t> order = best_on_average(e, 0);
+  ASSERT_EQ(order.size(), share.size());
+  EXPECT_EQ(order.front(), best);
+  for (std::size_t i = 1; i < order.size(); ++i) EXPECT_GE(share[order[i - 1]], share[order[i]]);
+}
+
 TEST(Select, MissingFiguresAreLeftOut) {
   const Experience e = experience(20, 0.3, 0.02, 3);
   CaveFigures little;
