@@ -189,7 +189,8 @@ void choose_policy(Mission& m) {
     if (o.otherwise.empty() || o.otherwise == kAutoPolicy) {
       const auto best = selection::best_on_average(e, selection::metric_of(e, o.select.metric, m.file));
       throw InputError(m.file, "policy.auto",
-                       s.reason + "; for such caves policy.auto.otherwise can name a policy, such as what did " +
+                       s.reason +
+                           "; for such caves policy.auto.otherwise can name a policy, such as what did " +
                            "best on average: --set " + kOtherwise +
                            (best.empty() ? kBestAsShipped : e.contestants[best.front()].policy));
     }

@@ -71,8 +71,8 @@ inline constexpr double kAsGood = 0.05;
 LeaveOneOut leave_one_out(const Experience& experience, const std::vector<std::string>& metrics,
                           const std::string& source);
 
-/// Contestants by the share of the best that they reached, on average over all sites with flights of two or more; best
-/// first. What to fly in a cave that is like no known one.
+/// Contestants by the share of the best that they reached, on average over all sites with flights of two or
+/// more; best first. What to fly in a cave that is like no known one.
 std::vector<std::size_t> best_on_average(const Experience& experience, std::size_t metric);
 
 /// The metrics of the goals (goal.h) that enough caves have, and that are not 0 in all of them.

@@ -60,8 +60,9 @@ std::string confidence_in_words(const Experience& e, const Selected& s) {
 }
 
 std::string best_on_average_in_words(const Experience& e, std::size_t best, const std::string& metric) {
-  return "On average over the " + core::counted(e.caves.size(), "cave") + " flown, " + e.contestants[best].name +
-         " did best in " + metric_words(metric) + ": a choice where nothing tells more";
+  return "On average over the " + core::counted(e.caves.size(), "cave") + " flown, " +
+         e.contestants[best].name + " did best in " + metric_words(metric) +
+         ": a choice where nothing tells more";
 }
 
 std::string runner_up_in_words(const Experience& e, const Selected& s, const std::string& metric) {

@@ -19,7 +19,8 @@ bool likeness_tells_nothing(const Selected& selected);
 std::string figures_in_words(const Kernel& kernel);
 
 /// Of a refusal: "On average over all 42 caves flown, deep_cave did best in ...".
-std::string best_on_average_in_words(const Experience& experience, std::size_t best, const std::string& metric);
+std::string best_on_average_in_words(const Experience& experience, std::size_t best,
+                                     const std::string& metric);
 
 /// "Runner-up: deep_cave, expected 66 % against 71 %"; "" without one.
 std::string runner_up_in_words(const Experience& experience, const Selected& selected,

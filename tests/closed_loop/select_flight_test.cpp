@@ -161,8 +161,7 @@ TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   const Output nothing = run_karst(fly + out);
   EXPECT_EQ(nothing.code, 1);
   EXPECT_TRUE(nothing.says("nothing is known of the cave")) << nothing.text;
-  const std::string own_mesh =
-      " --set policy.auto.survey=" + cave + " --set policy.auto.otherwise=deep_cave";
+  const std::string own_mesh = " --set policy.auto.survey=" + cave + " --set policy.auto.otherwise=deep_cave";
   EXPECT_TRUE(nothing.says("to use the cave's own mesh:" + own_mesh)) << nothing.text;
   const Output as_said = run_karst(fly + own_mesh + " --check " + (dir / "as_said.info").string());
   EXPECT_EQ(as_said.code, 0) << as_said.text;
