@@ -195,7 +195,8 @@ void ReturnHome::plan() {
         }
         if (!flown.empty() && !lasts_for(path_length_m(path.points), seconds_left)) {
           flown.push_back(from);
-          const Path back{.points = explorer.path_back(flown)};
+          Path back;
+          back.points = explorer.path_back(flown);
           way.as_come = path_length_m(back.points) < path_length_m(path.points);
           if (way.as_come) path = back;
         }
