@@ -12,10 +12,10 @@
 #include "sdk/selection/describe.h"
 #include "sdk/selection/free_space.h"
 #include "sdk/selection/goal.h"
-#include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/load_experience.h"
 #include "sdk/selection/preset.h"
 #include "sdk/selection/select.h"
+#include "sdk/selection/select_words.h"
 #include "sdk/terminal/terminal.h"
 
 namespace karst::flight {
@@ -187,12 +187,13 @@ void choose_policy(Mission& m) {
                         o.survey.empty() ? "" : selection::mesh_hash_of(o.survey, o.survey_start));
   if (s.refused) {
     if (o.otherwise.empty() || o.otherwise == kAutoPolicy) {
-      const auto best = selection::best_on_average(e, selection::metric_of(e, o.select.metric, m.file));
-      throw InputError(m.file, "policy.auto",
-                       s.reason +
-                           "; for such caves policy.auto.otherwise can name a policy, such as what did " +
-                           "best on average: --set " + kOtherwise +
-                           (best.empty() ? kBestAsShipped : e.contestants[best.front()].policy));
+      const auto best = selection::best_on_average(e, selection::metric_of(e, o.select.metric, m.file),
+                                                   o.select.conditions);
+      throw InputError(
+          m.file, "policy.auto",
+          s.reason + "; for such caves policy.auto.otherwise can name a policy: --set " + kOtherwise +
+              (best ? e.contestants[best->contestant].policy : kBestAsShipped) +
+              (best ? " (" + selection::best_on_average_in_words(e, *best, o.select.metric) + ")" : ""));
     }
     return take(m, o.otherwise, {}, "otherwise: " + s.reason);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "core_stack/common/counted.h"
 #include "core_stack/common/error.h"
@@ -48,9 +49,14 @@ Field field_at(const Experience& e, std::size_t s, std::size_t m, double sign) {
 
 double sign_of(const Experience& e, std::size_t m) { return evaluation::better_sign(e.metrics[m], e.source); }
 
+struct MeanScore {
+  std::size_t contestant;
+  double mean;
+};
+
 /// Contestants by their mean score over these goals and the sites that `counts`, the best first.
-std::vector<std::size_t> best_on_average(const Experience& e, const std::vector<std::size_t>& metrics,
-                                         const std::function<bool(std::size_t site)>& counts) {
+std::vector<MeanScore> mean_scores(const Experience& e, const std::vector<std::size_t>& metrics,
+                                   const std::function<bool(std::size_t site)>& counts) {
   std::vector<double> sum(e.contestants.size(), 0.0), n(e.contestants.size(), 0.0);
   double cells = 0;
   for (const std::size_t m : metrics)
@@ -64,11 +70,18 @@ std::vector<std::size_t> best_on_average(const Experience& e, const std::vector<
         n[k] += 1;
       }
     }
-  std::vector<std::size_t> order;
+  std::vector<MeanScore> order;
   for (std::size_t k = 0; k < sum.size(); ++k)
-    if (n[k] > 0 && n[k] >= kMinShareOfCells * cells) order.push_back(k);
+    if (n[k] > 0 && n[k] >= kMinShareOfCells * cells) order.push_back({k, sum[k] / n[k]});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return sum[a] / n[a] > sum[b] / n[b]; });
+                   [](const MeanScore& x, const MeanScore& y) { return x.mean > y.mean; });
+  return order;
+}
+
+std::vector<std::size_t> best_first(const Experience& e, const std::vector<std::size_t>& metrics,
+                                    const std::function<bool(std::size_t site)>& counts) {
+  std::vector<std::size_t> order;
+  for (const MeanScore& x : mean_scores(e, metrics, counts)) order.push_back(x.contestant);
   return order;
 }
 
@@ -156,14 +169,14 @@ class LeftOutCave {
     for (const KnownCave& known : rest_.caves)
       if (const Distance d = distance_between(e.caves[cave].figures, known.figures, scales); d.shared > 0)
         nearest_ = std::min(nearest_, d.value);
-    overall_ = best_on_average(rest_, metrics, [](std::size_t) { return true; });
+    overall_ = best_first(rest_, metrics, [](std::size_t) { return true; });
     for (const std::size_t m : metrics) {
       fits_.emplace(m, fit(rest_, m));
-      by_goal_.emplace(m, best_on_average(rest_, {m}, [](std::size_t) { return true; }));
+      by_goal_.emplace(m, best_first(rest_, {m}, [](std::size_t) { return true; }));
     }
     for (const Condition& c : e.conditions)
       if (!by_vehicle_.contains(c.vehicle))
-        by_vehicle_.emplace(c.vehicle, best_on_average(rest_, metrics, [&](std::size_t s) {
+        by_vehicle_.emplace(c.vehicle, best_first(rest_, metrics, [&](std::size_t s) {
                               return rest_.conditions[rest_.sites[s].condition].vehicle == c.vehicle;
                             }));
   }
@@ -234,8 +247,21 @@ std::size_t caves_with(const Experience& e, std::size_t m) {
 
 }  // namespace
 
-std::vector<std::size_t> best_on_average(const Experience& e, std::size_t metric) {
-  return best_on_average(e, {metric}, [](std::size_t) { return true; });
+std::optional<BestOnAverage> best_on_average(const Experience& e, std::size_t metric,
+                                             const AskedConditions& asked) {
+  const auto vehicle_of = [&e](std::size_t s) { return e.conditions[e.sites[s].condition].vehicle; };
+  for (const std::string& vehicle : {asked.vehicle, std::string()}) {
+    const auto counts = [&](std::size_t s) { return vehicle.empty() || vehicle_of(s) == vehicle; };
+    const std::vector<MeanScore> order = mean_scores(e, {metric}, counts);
+    if (order.size() < 2 || order.front().mean == order.back().mean) continue;
+    const std::vector<std::size_t> rock = rocks_of(e);
+    std::set<std::size_t> caves;
+    for (std::size_t s = 0; s < e.sites.size(); ++s)
+      if (counts(s) && field_at(e, s, metric, sign_of(e, metric)).flew.size() > 1)
+        caves.insert(rock[e.sites[s].cave]);
+    return BestOnAverage{order.front().contestant, caves.size(), vehicle};
+  }
+  return std::nullopt;
 }
 
 std::vector<std::string> goals_flown(const Experience& e) {

@@ -2,6 +2,7 @@
 // the rest, and its result in that cave is compared with the best one there; and what simpler rules lose.
 #pragma once
 #include <array>
+#include <optional>
 
 #include "core_stack/common/enum_names.h"
 #include "sdk/selection/select.h"
@@ -71,9 +72,15 @@ inline constexpr double kAsGood = 0.05;
 LeaveOneOut leave_one_out(const Experience& experience, const std::vector<std::string>& metrics,
                           const std::string& source);
 
-/// Contestants by the share of the best that they reached, on average over all sites with flights of two or
-/// more; best first. What to fly in a cave that is like no known one.
-std::vector<std::size_t> best_on_average(const Experience& experience, std::size_t metric);
+/// The contestant that reached the greatest share of the best one's result, on average over the flights of a
+/// vehicle: what to fly where no similar cave was flown.
+struct BestOnAverage {
+  std::size_t contestant = 0, caves = 0;
+  std::string vehicle;  // "": over all vehicles, as this one has not flown
+};
+/// Nothing if the contestants are not told apart.
+std::optional<BestOnAverage> best_on_average(const Experience& experience, std::size_t metric,
+                                             const AskedConditions& asked);
 
 /// The metrics of the goals (goal.h) that enough caves have, and that are not 0 in all of them.
 std::vector<std::string> goals_flown(const Experience& experience);

@@ -59,10 +59,11 @@ std::string confidence_in_words(const Experience& e, const Selected& s) {
   return out;
 }
 
-std::string best_on_average_in_words(const Experience& e, std::size_t best, const std::string& metric) {
-  return "On average over the " + core::counted(e.caves.size(), "cave") + " flown, " +
-         e.contestants[best].name + " did best in " + metric_words(metric) +
-         ": a choice where nothing tells more";
+std::string best_on_average_in_words(const Experience& e, const BestOnAverage& best,
+                                     const std::string& metric) {
+  return "Of the flights" + (best.vehicle.empty() ? "" : " of " + best.vehicle) + " in " +
+         core::counted(best.caves, "cave") + ", those of " + e.contestants[best.contestant].name +
+         " did best on average in " + metric_words(metric) + ": a choice where nothing tells more";
 }
 
 std::string runner_up_in_words(const Experience& e, const Selected& s, const std::string& metric) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "sdk/selection/leave_one_out.h"
 #include "sdk/selection/select.h"
 
 namespace karst::selection {
@@ -18,8 +19,8 @@ bool likeness_tells_nothing(const Selected& selected);
 /// The figures by which caves are alike: "width, loops"; "" if all caves count alike.
 std::string figures_in_words(const Kernel& kernel);
 
-/// Of a refusal: "On average over all 42 caves flown, deep_cave did best in ...".
-std::string best_on_average_in_words(const Experience& experience, std::size_t best,
+/// "Of the flights of lidar_uav in 42 caves, those of deep_cave did best on average in ...".
+std::string best_on_average_in_words(const Experience& experience, const BestOnAverage& best,
                                      const std::string& metric);
 
 /// "Runner-up: deep_cave, expected 66 % against 71 %"; "" without one.

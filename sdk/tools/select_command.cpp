@@ -72,11 +72,9 @@ void print_sentences(const std::string& text) {
   print_out("%s\n", wrapped(text, columns > 0 ? columns : kColumnsOfAFile, 2).c_str());
 }
 
-std::optional<std::size_t> best_on_average(const Experience& e, const std::string& metric,
-                                           const std::string& source) {
-  const std::vector<std::size_t> order =
-      selection::best_on_average(e, selection::metric_of(e, metric, source));
-  return order.empty() ? std::nullopt : std::optional(order.front());
+std::optional<selection::BestOnAverage> best_on_average(const Experience& e, const SelectArguments& args) {
+  const selection::SelectOptions& o = args.options;
+  return selection::best_on_average(e, selection::metric_of(e, o.metric, args.cave), o.conditions);
 }
 
 void print(const Experience& e, const selection::CaveFigures& cave, const Selected& s,
@@ -96,7 +94,7 @@ void print(const Experience& e, const selection::CaveFigures& cave, const Select
   }
   if (s.refused) {
     print_sentences("No policy is named: " + core::unit_text(s.reason) + ".");
-    if (const auto best = best_on_average(e, args.options.metric, args.cave))
+    if (const auto best = best_on_average(e, args))
       print_sentences(selection::best_on_average_in_words(e, *best, args.options.metric) + ".");
     return;
   }
@@ -162,11 +160,13 @@ ordered_json to_json(const Experience& e, const selection::CaveFigures& cave, co
          {"most_unlike_in",
           selection::figure_definitions()[static_cast<std::size_t>(n.distance.farthest)].name}});
   if (s.refused) {
-    if (const auto best = best_on_average(e, args.options.metric, args.cave)) {
-      const selection::Preset& otherwise = e.contestants[*best];
+    if (const auto best = best_on_average(e, args)) {
+      const selection::Preset& otherwise = e.contestants[best->contestant];
       j["best_on_average"] = {{"contestant", otherwise.name},
                               {"policy", otherwise.policy},
-                              {"parameters", parameters_json(otherwise)}};
+                              {"parameters", parameters_json(otherwise)},
+                              {"caves", best->caves},
+                              {"vehicle", best->vehicle}};
     }
     return j;
   }
@@ -194,7 +194,10 @@ int select_for(const SelectArguments& args) {
     print_json(to_json(e, cave.figures, s, args));
   else
     print(e, cave.figures, s, args);
-  if (s.refused) return kNothingSimilar;
+  if (s.refused) {
+    if (!args.preset.empty()) print_error("No preset is written to %s.\n", args.preset.c_str());
+    return kNothingSimilar;
+  }
   if (!args.preset.empty()) {
     const selection::Preset& first = e.contestants[s.ranking.front().contestant];
     evaluation::write_whole_file(args.preset,

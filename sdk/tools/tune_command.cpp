@@ -125,7 +125,8 @@ int finish(const TuneArguments& args, const tuning::TuneOptions& o, const TuneRe
     return kInterrupted;
   }
   if (r.best == 0) {
-    print_out("None of %zu candidates did better than the default; no preset is written.\n", r.tried.size());
+    print_out("None of %zu candidates did better than the default; no preset is written.\n",
+              r.tried.size() - 1);
     return 0;
   }
   const tuning::Candidate& best = r.tried[r.best];
@@ -146,12 +147,25 @@ int finish(const TuneArguments& args, const tuning::TuneOptions& o, const TuneRe
   return 0;
 }
 
+/// Throws what is wrong with the caves held out, which are flown last.
+void check_held_out(const tuning::TuneOptions& o, const fs::path& karst) {
+  if (o.held_out.empty()) return;
+  Campaign c = o.campaign;
+  c.name = "held_out";
+  c.caves = o.held_out;
+  c.contestants = {o.policy};
+  campaign::complete(c);
+  campaign::make_plan(c, karst, {});
+}
+
 int tune(const TuneArguments& args) {
   flight::refuse_run(args.out);
   if (fs::exists(fs::path(args.out) / "campaign.sqlite"))
     throw InputError(args.out, "campaign.sqlite", "is that of a campaign; choose another --out");
   const tuning::TuneOptions o = options_of(args);
   const std::size_t candidates = tuning::candidates_of(o);
+  const fs::path karst = fs::read_symlink("/proc/self/exe");
+  check_held_out(o, karst);
   if (!args.quiet)
     print_error("%s, %s through %s with %s\n", core::counted(o.axes.size(), "parameter").c_str(),
                 core::counted(candidates, "candidate").c_str(),
@@ -165,7 +179,7 @@ int tune(const TuneArguments& args) {
     campaign::complete(c);
     campaign::RunOptions run;
     run.folder = fs::path(args.out) / name;
-    run.karst = fs::read_symlink("/proc/self/exe");
+    run.karst = karst;
     run.jobs = args.jobs;
     run.keep = campaign::Keep::figures;
     run.binaries = args.any_binary ? campaign::AcceptedBinaries::any : campaign::AcceptedBinaries::same;

@@ -177,7 +177,8 @@ TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   const Output wide = run_karst(fly + out + " --set policy.auto.description=" + (dir / "wide.info").string());
   EXPECT_EQ(wide.code, 1);
   EXPECT_TRUE(wide.says("most unlike is its width: 80 m")) << wide.text;
-  EXPECT_TRUE(wide.says("what did best on average: --set policy.auto.otherwise=unknown_ratio")) << wide.text;
+  EXPECT_TRUE(wide.says("policy.auto.otherwise can name a policy: --set policy.auto.otherwise=unknown_ratio"))
+      << wide.text;
   EXPECT_FALSE(fs::exists(dir / "run"));
   const Output otherwise =
       run_karst(fly + " --set policy.auto.otherwise=nearest_frontier --set policy.auto.description=" +
@@ -186,6 +187,18 @@ TEST(PolicyAuto, WithoutKnowledgeOfTheCaveNothingFlies) {
   const Output survey =
       run_karst(fly + " --set policy.auto.survey=" + cave + " --check " + (dir / "surveyed.info").string());
   EXPECT_EQ(survey.code, 0) << survey.text;
+}
+
+// As it was: the flights of the whole search came first, and then the error.
+TEST(Tune, ACaveHeldOutThatIsNotThereIsSaidBeforeAnythingFlies) {
+  const fs::path dir = fresh_folder("tune_held_out");
+  const Output out = run_karst("tune nearest_frontier --caves " + small_cave(dir, 3) + " --held-out " +
+                               (dir / "nothing.info").string() +
+                               " --parameter min_distance --seeds 1 --flights 6 --time \"10 s\" --out " +
+                               (dir / "out").string());
+  EXPECT_EQ(out.code, 1);
+  EXPECT_TRUE(out.says("nothing.info")) << out.text;
+  EXPECT_FALSE(fs::exists(dir / "out" / "candidate000"));
 }
 
 TEST(Tune, WritesAPresetThatFliesAndGoesOnWithoutFlyingAgain) {
@@ -205,7 +218,7 @@ TEST(Tune, WritesAPresetThatFliesAndGoesOnWithoutFlyingAgain) {
   EXPECT_EQ(bytes_of(dir / "out" / "tune.csv"), table);
   EXPECT_EQ(fs::last_write_time(dir / "out" / "candidate001" / "campaign.sqlite"), stored);
   if (!fs::exists(dir / "out" / "preset.info")) {
-    EXPECT_TRUE(first.says("None of 4 candidates did better")) << first.text;
+    EXPECT_TRUE(first.says("None of 3 candidates did better")) << first.text;
     return;
   }
   EXPECT_TRUE(first.says("On caves held out: ")) << first.text;

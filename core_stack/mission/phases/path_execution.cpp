@@ -106,7 +106,7 @@ void PathExecution::avoid(double after_m, const PhaseMachine& phases, TimeNs now
       seconds(decided - now) * until_decided.speed_mps + path_length_m(stop.points) + kDetourMargin_m;
   const bool takes_off = phases.in(Phase::takeoff);
   if (after_m > needed_m && !takes_off) {
-    if (as_come_) return;  // no other path leads home; the map may change when the vehicle is nearer
+    if (as_come_) return;  // other paths lead far round, or not home; the map may change nearer to the place
     if (!detour_due_) recorder_.write(now, event::Safety{SafetyAction::replan, reason, after_m});
     detour_due_ = true;
     return;

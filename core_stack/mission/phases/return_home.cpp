@@ -8,6 +8,7 @@ namespace {
 constexpr double kAboveHome_m = 0.4, kSamePlace_m = 1.0;
 // Failed plans in a row. The obstacle may be another vehicle, or the last known place of one that has left.
 constexpr int kMaxFailures = 3, kMaxFailuresInCompany = 4;
+constexpr double kMuchShorter = 0.8;  // than the path through the map, to be flown as come
 constexpr TimeNs kPlanningBudget = 300 * kMillisecond;
 constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 // Without progress the vehicle lands where it is. A blocked cave does not open while it hovers, and dust
@@ -42,6 +43,7 @@ void ReturnHome::begin(const std::string& reason) {
   wiring_.enter(Phase::home, reason);
   still_.restart(onboard_.flight.reference().position, now);
   if (reason_.empty()) reason_ = reason;
+  chose_as_come_ = false;
   wiring_.give_up_goals();
   if (parts_.landing) choose_landing();
 }
@@ -133,14 +135,10 @@ void ReturnHome::find_path() {
 
 int ReturnHome::max_failures() const { return wiring_.in_company() ? kMaxFailuresInCompany : kMaxFailures; }
 
-/// Whether it has set out as it came, and got no farther than here.
-bool ReturnHome::stands_where_it_set_out() const {
-  return set_out_from_ && (onboard_.flight.reference().position - *set_out_from_).norm() < kSamePlace_m;
-}
-
-/// The same of a vehicle whose cameras see one side: it may see more by turning.
+/// Whether a vehicle whose cameras see one side has just set out from here, and come to rest again.
 bool ReturnHome::blocked_on_the_way_back() const {
-  return !onboard_.vehicle.lidar && stands_where_it_set_out();
+  return !onboard_.vehicle.lidar && set_out_from_ &&
+         (onboard_.flight.reference().position - *set_out_from_).norm() < kSamePlace_m;
 }
 
 /// What is in the way may have left since the cameras looked there: afterwards one more plan is made. To look
@@ -165,40 +163,35 @@ void ReturnHome::watch_patience(bool at_home) {
   wiring_.land_here(kReason);
 }
 
-/// Whether the battery lasts for flying `length_m` home and landing there, with the margin for what slows it
-/// down.
-bool ReturnHome::lasts_for(double length_m, double seconds_left) const {
-  const MissionOptions& o = onboard_.options.mission;
-  const double ground_z_m = onboard_.vehicle.T_world_start.position.z();
-  const double time_s =
-      home_time_s(length_m, ground_z_m, home_.z(), onboard_.options.motion, o.landing_speed_mps);
-  return home_slack_s(seconds_left, time_s, o.home_margin, 0) >= 0;
-}
-
 /// Plans through the map. A passage that has closed in the map may leave only a long way round: where the
-/// battery does not last for it, the vehicle flies back as it came, if that is shorter.
+/// battery does not last for it, the vehicle flies back as it came, once, if that is a good deal shorter and
+/// the map shows nothing that it would touch. In a team the passage may be closed by another vehicle, which
+/// moves on; with a region the flown path may lie outside.
 void ReturnHome::plan() {
   planning_ = true;
   const TimeNs begun = onboard_.now();
-  const bool may_fly_as_come = !landing_spot() && !stands_where_it_set_out();
+  const bool may_fly_as_come =
+      !chose_as_come_ && !landing_spot() && !wiring_.in_company() && !onboard_.options.region;
   onboard_.map.job(
       "home plan", kPlanningBudget,
-      [this, start = start(begun + kPlanningBudget), to = hover(),
+      [this, start = start(begun + kPlanningBudget), to = hover(), may_fly_as_come,
        flown = may_fly_as_come ? parts_.flown_path.points() : std::vector<Vec3>{},
-       seconds_left = parts_.endurance.seconds_left(begun)](Explorer& explorer) mutable {
+       lasting_m = lasting_length_m()](Explorer& explorer) mutable {
         WayHome way;
-        const Vec3 from = start.committed.points.back();
-        Path path = explorer.plan_to(from, to);
+        const std::vector<Vec3>& committed = start.committed.points;
+        Path path = explorer.plan_to(committed.back(), to);
         if (!path.found()) {
           way.route.path = std::move(path);
           return way;
         }
-        if (!flown.empty() && !lasts_for(path_length_m(path.points), seconds_left)) {
-          flown.push_back(from);
+        const double length_m = path_length_m(path.points);
+        if (may_fly_as_come && length_m > lasting_m) {
+          flown.insert(flown.end(), committed.begin(), committed.end());
           Path back;
           back.points = explorer.path_back(flown);
-          way.as_come = path_length_m(back.points) < path_length_m(path.points);
-          if (way.as_come) path = back;
+          way.as_come = path_length_m(back.points) < kMuchShorter * length_m &&
+                        explorer.touching_segment(back.points) < 0;
+          if (way.as_come) path = std::move(back);
         }
         if (way.as_come) start.at = 0;  // no polynomial for it
         way.route = make_route(explorer.map(), onboard_.options, onboard_.vehicle, start, path, {});
@@ -207,12 +200,27 @@ void ReturnHome::plan() {
       [this, begun](const WayHome& way) { on_plan(way, begun); });
 }
 
+/// The longest way home for which the battery lasts, by the estimate that turns the vehicle back, and without
+/// its reserve: the vehicle lands wherever it is before the battery is empty.
+double ReturnHome::lasting_length_m() const {
+  const CoreOptions& o = onboard_.options;
+  const double seconds_left = parts_.endurance.battery_seconds_left() - o.safety.battery_land_s,
+               cruise_mps = cruise_speed_mps(o.motion),
+               start_and_stop_s = cruise_mps / o.motion.max_acceleration_mps2,
+               descent_s = home_time_s(0, onboard_.vehicle.T_world_start.position.z(), home_.z(), o.motion,
+                                       o.mission.landing_speed_mps);
+  return cruise_mps * (seconds_left / (1 + o.mission.home_margin) - start_and_stop_s - descent_s);
+}
+
 void ReturnHome::on_plan(const WayHome& way, TimeNs begun) {
   planning_ = false;
   const TimeNs now = onboard_.now();
   PathExecution& path = parts_.path;
   if (!parts_.phases.in(Phase::home) || path.outdated(begun)) return;
-  if (way.as_come) return follow_as_come(way.route, "the battery does not last for the path through the map");
+  if (way.as_come) {
+    chose_as_come_ = true;
+    return follow_as_come(way.route, "the battery does not last for the path through the map");
+  }
   if (way.route.path.found()) {
     failures_ = 0;
     return path.follow(way.route, now);

@@ -63,11 +63,10 @@ class ReturnHome {
   bool leads_too_far(const HomeEstimate& estimate);
   void arrive();
   void find_path();
-  bool lasts_for(double length_m, double seconds_left) const;
   void plan();
+  double lasting_length_m() const;
   void on_plan(const WayHome& way, TimeNs begun);
   void follow_as_come(const Route& route, const std::string& why);
-  bool stands_where_it_set_out() const;
   bool blocked_on_the_way_back() const;
   void look_around();
   int max_failures() const;
@@ -87,6 +86,7 @@ class ReturnHome {
   std::string reason_;
   int failures_ = 0;                  // plans in a row that found no way
   bool planning_ = false;             // or choosing where to land
+  bool chose_as_come_ = false;        // though there was a path through the map
   std::optional<Vec3> set_out_from_;  // along the flown path, the last time
   TimeNs retry_ = 0;                  // no way home: it is asked for again then
   TimeNs company_at_ = 0;             // when another vehicle was near the last time

@@ -12,6 +12,12 @@ namespace {
 class ReturnHomeTest : public OnboardTest {
  protected:
   using OnboardTest::OnboardTest;
+  static VehicleDescription with_camera() {
+    VehicleDescription v = with_lidar();
+    v.lidar.reset();
+    v.cameras = {std::make_shared<CameraModel>()};
+    return v;
+  }
   void explore_and_go_home(double away_m) {
     hover();
     home.set_home(onboard.flight.reference().position);
@@ -65,56 +71,113 @@ TEST_F(ReturnHomeTest, WithoutAWayThroughTheMapItFliesBackAsItCameAndLandsAtHome
 }
 
 /// A ring of corridors; the side between the vehicle and home has come to look too tight for the usual
-/// clearance since the vehicle flew through it.
+/// clearance since the vehicle flew through it, or closed.
 class TightWayHomeTest : public ReturnHomeTest {
  protected:
-  void fly_home_from_the_far_end(double seconds_left) {
+  explicit TightWayHomeTest(const VehicleDescription& vehicle = with_lidar(), bool closed = false)
+      : ReturnHomeTest(vehicle), closed_(closed) {}
+  void fly_home_from_the_far_end(double battery_s) {
     Explorer& explorer = onboard.map.while_idle();
     const auto carve = [&](const Vec3& low, const Vec3& high, const std::vector<std::string>& open) {
       explorer.integrate(box_rays(explorer.map(), low, high, open));
     };
     carve({-2, -2, -1}, {5, 2, 3}, {"x+", "y+"});
-    carve({5, -0.5, -1}, {7, 0.5, 3}, {"x-", "x+"});
+    carve({5, -0.5, -1}, {7, 0.5, 3},
+          closed_ ? std::vector<std::string>{"x-"} : std::vector<std::string>{"x-", "x+"});
     carve({7, -2, -1}, {14, 2, 3}, {"x-", "y+"});
     carve({-2, 2, -1}, {2, 14, 3}, {"y-", "x+"});
     carve({10, 2, -1}, {14, 14, 3}, {"y-", "x-"});
     carve({2, 10, -1}, {10, 14, 3}, {"x-", "x+"});
-    endurance.note({.seconds_left = seconds_left});
+    endurance.note({.seconds_left = battery_s});
     explore_and_go_home(12);
-    steps(60, [this] {
-      greatest_y_m = std::max(greatest_y_m, onboard.flight.reference().position.y());
+    steps(90, [this] {
+      const Vec3 here = onboard.flight.reference().position;
+      flown_path.note(here);
+      greatest_y_m = std::max(greatest_y_m, here.y());
+      if (meanwhile) meanwhile(here);
       return phases.in(Phase::land);
     });
   }
+  void expect_at_home() {
+    EXPECT_EQ(landed, "");
+    EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
+  }
+  std::size_t times_as_come() {
+    return told("does not last for the path through the map: back the way it came");
+  }
+
   double greatest_y_m = 0;
+  std::function<void(const Vec3& here)> meanwhile;
+
+ private:
+  bool closed_;
 };
 
 // As it was: a passage closed in the map on the way home, and the battery ended on the long way round.
 TEST_F(TightWayHomeTest, WhereTheBatteryDoesNotLastForTheLongWayRoundItFliesBackAsItCame) {
   fly_home_from_the_far_end(20);
-  EXPECT_EQ(told("the battery does not last for the path through the map: back the way it came"), 1u);
+  EXPECT_EQ(times_as_come(), 1u);
   EXPECT_LT(greatest_y_m, 1);
-  EXPECT_EQ(landed, "");
-  EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
+  expect_at_home();
 }
 
 TEST_F(TightWayHomeTest, WhereTheBatteryLastsItFliesTheLongWayRound) {
-  fly_home_from_the_far_end(200);
+  fly_home_from_the_far_end(60);
   EXPECT_EQ(told("back the way it came"), 0u);
   EXPECT_GT(greatest_y_m, 10);
-  EXPECT_EQ(landed, "");
-  EXPECT_LT((onboard.flight.reference().position - home.hover()).norm(), 0.4);
+  expect_at_home();
+}
+
+TEST_F(TightWayHomeTest, WithAnotherVehicleNearItFliesTheLongWayRound) {
+  company = true;
+  fly_home_from_the_far_end(20);
+  EXPECT_EQ(times_as_come(), 0u);
+  EXPECT_GT(greatest_y_m, 10);
+}
+
+// As it was: it turned round at each detour of the long way, back to where the flown path was closed.
+TEST_F(TightWayHomeTest, StoppedOnTheWayBackAsItCameItKeepsToTheLongWayRound) {
+  double next_y_m = 3;
+  meanwhile = [&](const Vec3& here) {
+    if (path.as_come() && here.x() < 7.6 && !path.blocked() && !onboard.flight.at_rest(now()))
+      path.avoid(0.1, phases, now());
+    if (path.as_come() || here.y() < next_y_m) return;
+    next_y_m += 2;
+    path.avoid(6, phases, now());
+  };
+  fly_home_from_the_far_end(20);
+  EXPECT_EQ(times_as_come(), 1u);
+  EXPECT_GT(greatest_y_m, 10);
+  expect_at_home();
+}
+
+class ClosedWayHomeTest : public TightWayHomeTest {
+ protected:
+  ClosedWayHomeTest() : TightWayHomeTest(with_lidar(), true) {}
+};
+
+TEST_F(ClosedWayHomeTest, ItDoesNotFlyBackAsItCameWhereTheMapShowsThatItWouldTouch) {
+  fly_home_from_the_far_end(20);
+  EXPECT_EQ(times_as_come(), 0u);
+  EXPECT_GT(greatest_y_m, 10);
+  expect_at_home();
+}
+
+class CameraTightWayHomeTest : public TightWayHomeTest {
+ protected:
+  CameraTightWayHomeTest() : TightWayHomeTest(with_camera()) {}
+};
+
+TEST_F(CameraTightWayHomeTest, ACameraVehicleFliesBackAsItCameToo) {
+  fly_home_from_the_far_end(20);
+  EXPECT_EQ(times_as_come(), 1u);
+  EXPECT_LT(greatest_y_m, 1);
+  expect_at_home();
 }
 
 class CameraReturnHomeTest : public ReturnHomeTest {
  protected:
   CameraReturnHomeTest() : ReturnHomeTest(with_camera()) {}
-  static VehicleDescription with_camera() {
-    VehicleDescription v = with_lidar();
-    v.lidar.reset();
-    v.cameras = {std::make_shared<CameraModel>()};
-    return v;
-  }
 };
 
 TEST_F(CameraReturnHomeTest, WithoutAWayThroughTheMapItFliesBackAsItCameAndLandsAtHome) {
