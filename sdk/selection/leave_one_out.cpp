@@ -249,19 +249,17 @@ std::size_t caves_with(const Experience& e, std::size_t m) {
 
 std::optional<BestOnAverage> best_on_average(const Experience& e, std::size_t metric,
                                              const AskedConditions& asked) {
-  const auto vehicle_of = [&e](std::size_t s) { return e.conditions[e.sites[s].condition].vehicle; };
-  for (const std::string& vehicle : {asked.vehicle, std::string()}) {
-    const auto counts = [&](std::size_t s) { return vehicle.empty() || vehicle_of(s) == vehicle; };
-    const std::vector<MeanScore> order = mean_scores(e, {metric}, counts);
-    if (order.size() < 2 || order.front().mean == order.back().mean) continue;
-    const std::vector<std::size_t> rock = rocks_of(e);
-    std::set<std::size_t> caves;
-    for (std::size_t s = 0; s < e.sites.size(); ++s)
-      if (counts(s) && field_at(e, s, metric, sign_of(e, metric)).flew.size() > 1)
-        caves.insert(rock[e.sites[s].cave]);
-    return BestOnAverage{order.front().contestant, caves.size(), vehicle};
-  }
-  return std::nullopt;
+  const auto has_flown = [&](const Condition& c) { return c.vehicle == asked.vehicle; };
+  const bool known = std::any_of(e.conditions.begin(), e.conditions.end(), has_flown);
+  const auto counts = [&](std::size_t s) { return !known || has_flown(e.conditions[e.sites[s].condition]); };
+  const std::vector<MeanScore> order = mean_scores(e, {metric}, counts);
+  if (order.size() < 2 || order.front().mean == order.back().mean) return std::nullopt;
+  const std::vector<std::size_t> rock = rocks_of(e);
+  std::set<std::size_t> caves;
+  for (std::size_t s = 0; s < e.sites.size(); ++s)
+    if (counts(s) && field_at(e, s, metric, sign_of(e, metric)).flew.size() > 1)
+      caves.insert(rock[e.sites[s].cave]);
+  return BestOnAverage{order.front().contestant, caves.size(), known ? asked.vehicle : ""};
 }
 
 std::vector<std::string> goals_flown(const Experience& e) {

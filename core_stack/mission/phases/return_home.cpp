@@ -16,6 +16,14 @@ constexpr TimeNs kEstimateBudget = 100 * kMillisecond;
 constexpr TimeNs kPatience = 12 * kSecond, kPatienceInCompany = 60 * kSecond;
 constexpr TimeNs kAgain = kSecond;
 
+/// The flown path backwards from where the vehicle can stop, its loops cut.
+Path as_come(const Explorer& explorer, std::vector<Vec3> flown, const RouteStart& start) {
+  flown.insert(flown.end(), start.committed.points.begin(), start.committed.points.end());
+  Path back;
+  back.points = explorer.path_back(flown);
+  return back;
+}
+
 }  // namespace
 
 const Vec3& ReturnHome::hover() const {
@@ -178,17 +186,14 @@ void ReturnHome::plan() {
        flown = may_fly_as_come ? parts_.flown_path.points() : std::vector<Vec3>{},
        lasting_m = lasting_length_m()](Explorer& explorer) mutable {
         WayHome way;
-        const std::vector<Vec3>& committed = start.committed.points;
-        Path path = explorer.plan_to(committed.back(), to);
+        Path path = explorer.plan_to(start.committed.points.back(), to);
         if (!path.found()) {
           way.route.path = std::move(path);
           return way;
         }
         const double length_m = path_length_m(path.points);
         if (may_fly_as_come && length_m > lasting_m) {
-          flown.insert(flown.end(), committed.begin(), committed.end());
-          Path back;
-          back.points = explorer.path_back(flown);
+          Path back = as_come(explorer, std::move(flown), start);
           way.as_come = path_length_m(back.points) < kMuchShorter * length_m &&
                         explorer.touching_segment(back.points) < 0;
           if (way.as_come) path = std::move(back);
@@ -246,16 +251,13 @@ void ReturnHome::follow_as_come(const Route& route, const std::string& why) {
 void ReturnHome::fly_back_as_come() {
   planning_ = true;
   const TimeNs begun = onboard_.now();
-  std::vector<Vec3> flown = parts_.flown_path.points();
-  flown.push_back(onboard_.flight.reference().position);
   RouteStart from_here = start(begun);
   from_here.at = 0;  // no polynomial for it
   onboard_.map.job(
       "way back", kPlanningBudget,
-      [this, flown = std::move(flown), from_here](Explorer& explorer) {
-        Path back;
-        back.points = explorer.path_back(flown);
-        return make_route(explorer.map(), onboard_.options, onboard_.vehicle, from_here, back, {});
+      [this, flown = parts_.flown_path.points(), from_here](Explorer& explorer) {
+        return make_route(explorer.map(), onboard_.options, onboard_.vehicle, from_here,
+                          as_come(explorer, flown, from_here), {});
       },
       [this, begun](const Route& route) {
         planning_ = false;

@@ -74,8 +74,7 @@ TEST_F(ReturnHomeTest, WithoutAWayThroughTheMapItFliesBackAsItCameAndLandsAtHome
 /// clearance since the vehicle flew through it, or closed.
 class TightWayHomeTest : public ReturnHomeTest {
  protected:
-  explicit TightWayHomeTest(const VehicleDescription& vehicle = with_lidar(), bool closed = false)
-      : ReturnHomeTest(vehicle), closed_(closed) {}
+  using ReturnHomeTest::ReturnHomeTest;
   void fly_home_from_the_far_end(double battery_s) {
     Explorer& explorer = onboard.map.while_idle();
     const auto carve = [&](const Vec3& low, const Vec3& high, const std::vector<std::string>& open) {
@@ -83,7 +82,7 @@ class TightWayHomeTest : public ReturnHomeTest {
     };
     carve({-2, -2, -1}, {5, 2, 3}, {"x+", "y+"});
     carve({5, -0.5, -1}, {7, 0.5, 3},
-          closed_ ? std::vector<std::string>{"x-"} : std::vector<std::string>{"x-", "x+"});
+          closed ? std::vector<std::string>{"x-"} : std::vector<std::string>{"x-", "x+"});
     carve({7, -2, -1}, {14, 2, 3}, {"x-", "y+"});
     carve({-2, 2, -1}, {2, 14, 3}, {"y-", "x+"});
     carve({10, 2, -1}, {14, 14, 3}, {"y-", "x-"});
@@ -106,11 +105,9 @@ class TightWayHomeTest : public ReturnHomeTest {
     return told("does not last for the path through the map: back the way it came");
   }
 
+  bool closed = false;
   double greatest_y_m = 0;
   std::function<void(const Vec3& here)> meanwhile;
-
- private:
-  bool closed_;
 };
 
 // As it was: a passage closed in the map on the way home, and the battery ended on the long way round.
@@ -151,12 +148,8 @@ TEST_F(TightWayHomeTest, StoppedOnTheWayBackAsItCameItKeepsToTheLongWayRound) {
   expect_at_home();
 }
 
-class ClosedWayHomeTest : public TightWayHomeTest {
- protected:
-  ClosedWayHomeTest() : TightWayHomeTest(with_lidar(), true) {}
-};
-
-TEST_F(ClosedWayHomeTest, ItDoesNotFlyBackAsItCameWhereTheMapShowsThatItWouldTouch) {
+TEST_F(TightWayHomeTest, ItDoesNotFlyBackAsItCameWhereTheMapShowsThatItWouldTouch) {
+  closed = true;
   fly_home_from_the_far_end(20);
   EXPECT_EQ(times_as_come(), 0u);
   EXPECT_GT(greatest_y_m, 10);
