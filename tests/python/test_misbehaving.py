@@ -19,6 +19,7 @@ class P(karst.Policy):
 # A busy machine takes long for a second of processor time, and must not look like one that hangs.
 LIMITS = {"policy.cpu_limit": "1 s", "policy.hang_limit": "60 s", "policy.memory_limit_mib": "700"}
 HANGS_SOON = {"policy.hang_limit": "2 s"}
+FILLS_MEMORY = {"policy.cpu_limit": "60 s"}  # on a slow machine 700 MiB take more than a second
 
 
 @pytest.fixture
@@ -102,7 +103,8 @@ def test_sleeping_for_ever(drawer):
 
 
 def test_memory_hog(drawer):
-    failed_three_times(drawer("x = []\nwhile True: x.append(bytearray(50 << 20))"), "MemoryError (mine.py, line 11")
+    flight = drawer("x = []\nwhile True: x.append(bytearray(50 << 20))", settings=FILLS_MEMORY)
+    failed_three_times(flight, "MemoryError (mine.py, line 11")
 
 
 def test_crash_in_an_extension(drawer):
