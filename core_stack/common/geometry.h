@@ -26,6 +26,9 @@ struct Pose {
   }
 };
 
+/// `v`, shortened to the length `most` if it is longer.
+inline Vec3 at_most(const Vec3& v, double most) { return v.norm() > most ? Vec3(v * (most / v.norm())) : v; }
+
 /// Angle in [-pi, pi).
 inline double wrap_angle(double a) {
   constexpr double two_pi = 2.0 * std::numbers::pi;

@@ -7,11 +7,6 @@ namespace {
 
 constexpr double kGravity = 9.81;  // m/s^2
 
-Vec3 clamped(const Vec3& v, double max_norm) {
-  const double n = v.norm();
-  return n > max_norm ? Vec3(v * (max_norm / n)) : v;
-}
-
 /// Attitude whose z axis lies along `force` and whose x axis, seen from above, points to `heading_rad`.
 Eigen::Matrix3d attitude_of(const Vec3& force, double heading_rad) {
   const Vec3 left(-std::sin(heading_rad), std::cos(heading_rad), 0);
@@ -37,7 +32,7 @@ Vec3 feedforward_rate(const Eigen::Matrix3d& R, const Vec3& force, const Vec3& j
 
 /// Tilting comes first: it carries the vehicle; turning takes what is left of the rate limit.
 Vec3 limited_rate(const Vec3& rate, double limit) {
-  Vec3 out = clamped(Vec3(rate.x(), rate.y(), 0), limit);
+  Vec3 out = at_most(Vec3(rate.x(), rate.y(), 0), limit);
   const double left = std::sqrt(std::max(0.0, limit * limit - out.squaredNorm()));
   out.z() = std::clamp(rate.z(), -left, left);
   return out;
@@ -61,7 +56,7 @@ Vec3 limited_force(const Vec3& wanted, double max_tilt_rad, double max_force_mps
   Vec3 f = wanted;
   f.z() = std::clamp(f.z(), std::min(0.2 * kGravity, max_force_mps2), max_force_mps2);
   const double room = std::sqrt(std::max(0.0, max_force_mps2 * max_force_mps2 - f.z() * f.z()));
-  f.head<2>() = clamped(Vec3(f.x(), f.y(), 0), std::min(f.z() * std::tan(max_tilt_rad), room)).head<2>();
+  f.head<2>() = at_most(Vec3(f.x(), f.y(), 0), std::min(f.z() * std::tan(max_tilt_rad), room)).head<2>();
   return f;
 }
 
@@ -91,10 +86,10 @@ AttitudeRateCommand Se3Controller::update(const State& state, const Reference& r
   const Vec3 cut = wanted - force;
   Vec3 lesson = position_error;
   if (const double n = cut.norm(); n > 1e-6) lesson -= std::max(0.0, lesson.dot(cut) / (n * n)) * cut;
-  world_disturbance_mps2_ = clamped(world_disturbance_mps2_ - options_.world_integral_gain * dt_s * lesson,
+  world_disturbance_mps2_ = at_most(world_disturbance_mps2_ - options_.world_integral_gain * dt_s * lesson,
                                     options_.max_disturbance_mps2);
   body_disturbance_mps2_ =
-      clamped(body_disturbance_mps2_ - options_.body_integral_gain * dt_s * (R.transpose() * lesson),
+      at_most(body_disturbance_mps2_ - options_.body_integral_gain * dt_s * (R.transpose() * lesson),
               options_.max_disturbance_mps2);
 
   const Eigen::Matrix3d desired = attitude_of(force, reference.heading_rad);

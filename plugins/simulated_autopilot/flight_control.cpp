@@ -8,6 +8,7 @@
 namespace karst::sim {
 namespace {
 
+using core::at_most;
 using core::Quat;
 using core::Vec3;
 
@@ -16,8 +17,6 @@ const Vec3 kPositionGain(0.95, 0.95, 1.0), kVelocityGain(1.8, 1.8, 4.0), kIntegr
 constexpr double kMaxIntegral_mps2 = 4, kMaxSpeed_mps = 5, kMaxTilt = 0.7;  // tangent: 35 degrees
 const Vec3 kAttitudeGain(6.5, 6.5, 2.8);
 constexpr double kMaxRate_radps = 3.8, kMaxYawRate_radps = 3.5;
-
-Vec3 limited(const Vec3& v, double most) { return v.norm() > most ? Vec3(v * (most / v.norm())) : v; }
 
 }  // namespace
 
@@ -29,7 +28,7 @@ double yaw_of(const Quat& attitude) {
 RateTarget FlightControl::follow(const PositionTarget& t, const Motion& m, double dt_s) {
   Vec3 velocity = t.velocity_mps;
   if (t.position) velocity += kPositionGain.cwiseProduct(*t.position - m.position);
-  const Vec3 error = limited(velocity, kMaxSpeed_mps) - m.velocity_mps;
+  const Vec3 error = at_most(velocity, kMaxSpeed_mps) - m.velocity_mps;
   integral_mps2_ += dt_s * kIntegralGain.cwiseProduct(error);
   integral_mps2_ = integral_mps2_.cwiseMax(-kMaxIntegral_mps2).cwiseMin(kMaxIntegral_mps2);
   const Vec3 acceleration = t.acceleration_mps2 + kVelocityGain.cwiseProduct(error) + integral_mps2_;

@@ -19,6 +19,10 @@ constexpr double kEmergencyFraction = 0.95;
 /// Fraction of the maximal heading rate while looking around; the rest makes up for the acceleration phase.
 constexpr double kTurningFraction = 0.9;
 
+/// A plan with a receding horizon begins where the reference is: there is no delay to catch up. The tracker
+/// keeps a little below its limits.
+constexpr double kPlannedSpeedFraction = 0.98, kPlannedAccelerationFraction = 0.9;
+
 /// Trajectories stay below the tracker's limits. If they were sampled at the limits, the virtual vehicle
 /// could never catch up after a delay: it would fall ever further behind, and cut corners.
 MotionLimits with_room_to_catch_up(MotionLimits limits) {
@@ -37,7 +41,8 @@ MotionLimits slowed(MotionLimits limits, std::optional<double> max_speed_mps) {
 }
 
 Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
-    : limits_(with_room_to_catch_up(options.motion)),
+    : tracked_(options.motion),
+      limits_(with_room_to_catch_up(options.motion)),
       emergency_(limits_),
       estimator_(options.localization.estimator, vehicle.T_world_start),
       tracker_(options.tracker, options.motion),
@@ -105,6 +110,13 @@ void Flight::follow(const Course& course, Trajectory ready) {
 MotionLimits Flight::limits(std::optional<double> max_speed_mps) const {
   MotionLimits limits = limits_;
   limits.max_speed_mps = std::min(limits.max_speed_mps, speed_cap_mps_);
+  return slowed(limits, max_speed_mps);
+}
+
+MotionLimits Flight::limits_of_plans(std::optional<double> max_speed_mps) const {
+  MotionLimits limits = tracked_;
+  limits.max_speed_mps = std::min(kPlannedSpeedFraction * limits.max_speed_mps, speed_cap_mps_);
+  limits.max_acceleration_mps2 *= kPlannedAccelerationFraction;
   return slowed(limits, max_speed_mps);
 }
 
@@ -240,8 +252,8 @@ MotionState Flight::motion_at(TimeNs t) const {
   const Reference& r = reference();
   const double dt = seconds(t - r.stamp);
   return {r.position + dt * r.velocity_mps + 0.5 * dt * dt * r.acceleration_mps2,
-          r.velocity_mps + dt * r.acceleration_mps2, wrap_angle(r.heading_rad + dt * r.heading_rate_radps),
-          r.heading_rate_radps};
+          r.velocity_mps + dt * r.acceleration_mps2, r.acceleration_mps2,
+          wrap_angle(r.heading_rad + dt * r.heading_rate_radps), r.heading_rate_radps};
 }
 
 std::vector<TrajectorySample> Flight::samples_from(TimeNs t) const {
@@ -249,8 +261,6 @@ std::vector<TrajectorySample> Flight::samples_from(TimeNs t) const {
   for (TimeNs at = t; at < trajectory_.end();) out.push_back(trajectory_.at(at += trajectory_.period));
   return out;
 }
-
-double Flight::braking_mps2() const { return kBrakingFraction * limits_.max_acceleration_mps2; }
 
 Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) const {
   CommittedSegment out{
@@ -270,7 +280,8 @@ Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) co
 /// The acceleration falls to that of braking at the greatest jerk: x = v T + a T^2 / 2 - j T^3 / 6 until
 /// then, or until the vehicle stands.
 Flight::CommittedSegment Flight::until_stop(TimeNs t) const {
-  const double v = velocity_at(t).norm(), braking = braking_mps2(), jerk = limits_.max_jerk_mps3;
+  const double v = velocity_at(t).norm(), braking = kBrakingFraction * limits_.max_acceleration_mps2,
+               jerk = limits_.max_jerk_mps3;
   if (v < 1e-3) return committed_segment(t, 0);
   const double a = std::clamp(departure_at(t).acceleration_mps2.dot(velocity_at(t)) / v, -braking,
                               limits_.max_acceleration_mps2);

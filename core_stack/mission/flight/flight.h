@@ -62,6 +62,8 @@ class Flight {
   void follow(const Course& course, Trajectory ready);
   /// The limits that `follow` observes.
   MotionLimits limits(std::optional<double> max_speed_mps = std::nullopt) const;
+  /// The same for plans that begin at the reference.
+  MotionLimits limits_of_plans(std::optional<double> max_speed_mps = std::nullopt) const;
   /// Limits the speed from now on, also along the rest of the current path.
   void cap_speed(TimeNs now, double max_speed_mps);
   /// Climbs (or descends, if negative) vertically by `height_m` at `speed_mps` from the current reference.
@@ -108,8 +110,6 @@ class Flight {
   MotionState motion_at(TimeNs t) const;
   /// The trajectory from `t` to its end, every 100 ms.
   std::vector<TrajectorySample> samples_from(TimeNs t) const;
-  /// The deceleration of planned stops.
-  double braking_mps2() const;
   /// Time at which the trajectory is nearest to `p`.
   TimeNs time_nearest(const Vec3& p) const;
   double remaining_s(TimeNs now) const { return seconds(std::max<TimeNs>(0, trajectory_.end() - now)); }
@@ -126,7 +126,7 @@ class Flight {
   void arm(TimeNs now);
   Departure departure_at(TimeNs t) const;
 
-  MotionLimits limits_, emergency_;  // for paths, and for braking
+  MotionLimits tracked_, limits_, emergency_;  // of the tracker, for paths, and for braking
   Estimator estimator_;
   MpcTracker tracker_;
   Se3Controller controller_;

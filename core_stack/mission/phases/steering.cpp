@@ -5,7 +5,8 @@
 namespace karst::core {
 namespace {
 
-constexpr TimeNs kSteeringPeriod = 300 * kMillisecond, kBudget = 100 * kMillisecond;
+constexpr double kBrakingFraction = 0.8;  // of the acceleration limit; the rest is for tracking
+constexpr TimeNs kSteeringPeriod = 200 * kMillisecond, kBudget = 100 * kMillisecond;
 constexpr double kSame_m = 0.01;
 /// A plan that begins farther from where the vehicle is by then is not flown: it would cut a corner.
 constexpr double kOff_m = 0.05, kOff_mps = 0.25;
@@ -62,7 +63,7 @@ bool Steering::goal_waits() const {
 }
 
 MotionLimits Steering::limits(const Goal& goal) const {
-  return onboard_.flight.limits(goal.max_speed_mps > 0 ? std::optional(goal.max_speed_mps) : std::nullopt);
+  return onboard_.flight.limits_of_plans(goal.max_speed_mps > 0 ? std::optional(goal.max_speed_mps) : std::nullopt);
 }
 
 HorizonQuery Steering::query(TimeNs at) const {
@@ -75,7 +76,7 @@ HorizonQuery Steering::query(TimeNs at) const {
   q.goal = {goal.position, goal.heading_rad};
   q.turns = turns();
   q.limits = limits(goal);
-  q.braking_mps2 = flight.braking_mps2();
+  q.braking_mps2 = kBrakingFraction * q.limits.max_acceleration_mps2;
   q.seed = static_cast<std::uint64_t>(at);
   return q;
 }

@@ -145,17 +145,20 @@ class Search {
     return true;
   }
 
+  std::optional<double> length_to_goal_m(const Vec3& from) const {
+    const std::optional<double> estimate_m = to_goal_.estimated_length_m(roadmap_, from);
+    return estimate_m ? estimate_m : to_goal_.length_m(map_, roadmap_, from);
+  }
+
   /// The time from there to the goal. What is flown away from the goal while braking counts twice.
   std::optional<double> time_left_s(const MotionState& s) const {
     const double v = s.velocity_mps.norm(), a = q_.limits.max_acceleration_mps2,
                  v_max = q_.limits.max_speed_mps;
     const double stop_m = v * v / (2 * q_.braking_mps2);
-    std::optional<double> left_m = to_goal_.length_m(map_, roadmap_, s.position);
-    if (stop_m > 0.05) {
-      const Vec3 stop = s.position + stop_m / v * s.velocity_mps;
-      if (const auto from_stop = to_goal_.length_m(map_, roadmap_, stop)) left_m = *from_stop + stop_m;
-    }
+    const Vec3 stop = s.position + (stop_m > 0.05 ? stop_m / v : 0) * s.velocity_mps;
+    std::optional<double> left_m = length_to_goal_m(stop);
     if (!left_m) return std::nullopt;
+    *left_m += (stop - s.position).norm();
     // It never reaches v_max on a short way; at the goal nothing is left.
     double left_s = *left_m / v_max + std::min(std::max(0.0, v_max - v) / a, std::sqrt(*left_m / a));
     if (!q_.turns || !std::isfinite(q_.goal.heading_rad)) return left_s;

@@ -7,36 +7,45 @@
 namespace karst::core {
 namespace {
 
-/// A velocity is approached with this time constant: the jerk of the tracker's reference is limited.
+/// A velocity is approached with this time constant: acceleration fades out.
 constexpr double kApproach_s = 0.3;
+constexpr double kDt_s = seconds(kRolloutPeriod);
+
+/// The acceleration a period later, if `wanted_mps2` is wanted.
+Vec3 next_acceleration(const Vec3& now_mps2, const Vec3& wanted_mps2, const MotionLimits& limits) {
+  return now_mps2 + at_most(wanted_mps2 - now_mps2, kDt_s * limits.max_jerk_mps3);
+}
 
 }  // namespace
 
 Rollout roll_out(const MotionState& start, const Legs& legs, const MotionLimits& limits,
                  double braking_mps2) {
-  const double dt = seconds(kRolloutPeriod);
-  HeadingCourse course(start.heading_rad, limits, dt, start.heading_rate_radps);
+  HeadingCourse course(start.heading_rad, limits, kDt_s, start.heading_rate_radps);
   Rollout out;
   out.samples.reserve(64);
   out.samples.push_back({start.position, start.heading_rad});
-  Vec3 p = start.position, v = start.velocity_mps;
+  Vec3 p = start.position, v = start.velocity_mps,
+       a = at_most(start.acceleration_mps2, limits.max_acceleration_mps2);
+  const double v_max = std::max(limits.max_speed_mps, v.norm());
+  const auto move_to = [&](const Vec3& next, double heading_rad) {
+    p += 0.5 * kDt_s * (v + next);
+    v = next;
+    out.samples.push_back({p, course.step(heading_rad)});
+  };
   for (const Leg& leg : legs) {
     for (TimeNs t = 0; t < kLeg; t += kRolloutPeriod) {
-      Vec3 a = (leg.velocity_mps - v) / kApproach_s;
-      if (const double norm = a.norm(); norm > limits.max_acceleration_mps2)
-        a *= limits.max_acceleration_mps2 / norm;
-      p += dt * v + 0.5 * dt * dt * a;
-      v += dt * a;
-      out.samples.push_back({p, course.step(leg.heading_rad)});
+      const Vec3 wanted = at_most((leg.velocity_mps - v) / kApproach_s, limits.max_acceleration_mps2);
+      a = next_acceleration(a, wanted, limits);
+      move_to(at_most(v + kDt_s * a, v_max), leg.heading_rad);
     }
   }
-  out.end = {p, v, course.heading_rad(), course.rate_radps()};
+  out.end = {p, v, a, course.heading_rad(), course.rate_radps()};
   while (v.norm() > 1e-9) {
-    const double slower = std::min(v.norm(), dt * braking_mps2);
-    const Vec3 next = v - slower * v.normalized();
-    p += 0.5 * dt * (v + next);
-    v = next;
-    out.samples.push_back({p, course.step(legs.back().heading_rad)});
+    a = next_acceleration(a, -braking_mps2 * v.normalized(), limits);
+    const Vec3 next = at_most(v + kDt_s * a, v_max);
+    // At the end it stops short of turning round.
+    const bool stands = v.norm() <= kDt_s * braking_mps2 || next.dot(v) <= 0;
+    move_to(stands ? Vec3::Zero() : next, legs.back().heading_rad);
   }
   return out;
 }

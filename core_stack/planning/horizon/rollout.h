@@ -1,5 +1,5 @@
-// Roll-out: the motion of a point with limited acceleration and heading rate that follows a few legs, and
-// then stops.
+// Roll-out: the motion of a point with limited speed, acceleration, jerk and heading rate that follows a few
+// legs, and then stops.
 #pragma once
 #include <array>
 #include <vector>
@@ -18,7 +18,7 @@ constexpr TimeNs kLeg = kSecond, kRolloutPeriod = 100 * kMillisecond;
 using Legs = std::array<Leg, kLegs>;
 
 struct MotionState {
-  Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero();
+  Vec3 position = Vec3::Zero(), velocity_mps = Vec3::Zero(), acceleration_mps2 = Vec3::Zero();
   double heading_rad = 0, heading_rate_radps = 0;
 };
 
@@ -27,8 +27,7 @@ struct Rollout {
   MotionState end;                        // of the last leg, before it brakes
 };
 
-/// Speeds stay within the limits if those of the legs and of the start do. It brakes with
-/// `braking_mps2`, in a straight line.
+/// Speeds stay within the limits if those of the legs and of the start do. It brakes with `braking_mps2`.
 Rollout roll_out(const MotionState& start, const Legs& legs, const MotionLimits& limits, double braking_mps2);
 
 }  // namespace karst::core

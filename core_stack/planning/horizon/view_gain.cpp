@@ -44,17 +44,24 @@ std::vector<ViewRay> view_rays(const VehicleDescription& vehicle) {
 }
 
 ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m)
-    : resolution_m_(map.resolution_m()) {
+    : resolution_m_(2 * map.resolution_m()) {
   const auto half = static_cast<std::int32_t>(std::min(kMostCells, std::ceil(half_edge_m / resolution_m_)));
-  const CellKey middle = map.key_of(center);
+  const CellKey k = map.key_of(center), middle{k.x >> 1, k.y >> 1, k.z >> 1};
   low_ = {middle.x - half, middle.y - half, middle.z - half};
   edge_ = 2 * half + 1;
-  cells_.assign(
-      static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_) * static_cast<std::size_t>(edge_),
-      Cell::unknown);
+  const auto e = static_cast<std::size_t>(edge_);
+  cells_.assign(e * e * e, Cell::unknown);
   seen_by_.assign(cells_.size(), 0);
-  map.for_each_in_box(low_, {middle.x + half, middle.y + half, middle.z + half},
-                      [this](const CellKey& k, Cell c) { cells_[index_of(k)] = c; });
+  // Rock anywhere in it makes a cell rock; at least half of a free one is known.
+  std::vector<std::uint8_t> known(cells_.size(), 0);
+  const CellKey high = low_ + CellKey{edge_, edge_, edge_};
+  map.for_each_in_box({2 * low_.x, 2 * low_.y, 2 * low_.z}, {2 * high.x - 1, 2 * high.y - 1, 2 * high.z - 1},
+                      [&](const CellKey& fine, Cell c) {
+                        const std::size_t at = index_of({fine.x >> 1, fine.y >> 1, fine.z >> 1});
+                        if (c == Cell::occupied) cells_[at] = Cell::occupied;
+                        if (c == Cell::free && ++known[at] >= 4 && cells_[at] == Cell::unknown)
+                          cells_[at] = Cell::free;
+                      });
   if (map.region()) leave_out_beyond(*map.region());
 }
 

@@ -206,6 +206,26 @@ std::optional<double> DistanceTree::length_m(const VoxelMap& map, const Roadmap&
   return path_length_m(escape) + length_m;
 }
 
+std::optional<double> DistanceTree::estimated_length_m(const Roadmap& roadmap, const Vec3& from) const {
+  const RoadmapGraph& g = roadmap.graph();
+  if (!tree_->root || !g.rule) return std::nullopt;
+  double best_m = kUnreached_m;
+  const auto by = [&](const NodeRef& n) {
+    best_m = std::min(best_m, (g.position_of(n) - from).norm() + tree_->length(n));
+    for (const Join& j : tree_->joins)
+      if (j.node.tile == n.tile && j.node.local == n.local)
+        best_m = std::min(best_m, (*tree_->root - from).norm());
+  };
+  const CellKey k = g.free.key_of(from);
+  const int bit = (k.x & 3) | (k.y & 3) << 2 | (k.z & 3) << 4;
+  g.for_each_node_in_block(k, [&](const NodeRef& n, const RoadmapNode& node) {
+    if (!(node.cells >> bit & 1)) return;
+    by(n);
+    g.for_each_neighbour(n, by);
+  });
+  return best_m < kUnreached_m ? std::optional(best_m) : std::nullopt;
+}
+
 Path DistanceTree::find(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const {
   const RoadmapGraph& g = roadmap.graph();
   Path path;

@@ -135,7 +135,6 @@ void sample(const Polynomial& polynomial, double start_speed_mps, const MotionLi
   if (heading.goal_heading_rad) end_facing(course, *heading.goal_heading_rad, out.samples);
 }
 
-Vec3 at_most(const Vec3& v, double most) { return v.norm() > most ? Vec3(v * (most / v.norm())) : v; }
 
 }  // namespace
 

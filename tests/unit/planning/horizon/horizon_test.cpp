@@ -78,6 +78,7 @@ TEST(Rollout, KeepsToTheLimitsAndEndsAtRest) {
     MotionState start;
     start.velocity_mps = velocity();
     start.heading_rate_radps = real(-1, 1);
+    for (int i = 0; i < 3; ++i) start.acceleration_mps2[i] = real(-0.8, 0.8);
     Legs legs;
     for (Leg& leg : legs) {
       leg.velocity_mps = velocity();
@@ -162,7 +163,8 @@ TEST_F(HorizonTest, ArrivesAtTheGoalAndFacesAsAsked) {
     const std::vector<TrajectorySample> s = p ? p->samples : query.under_way;
     ASSERT_FALSE(s.empty());
     const auto at = [&](std::size_t k) { return s[std::min(k, s.size() - 1)]; };
-    query.start = {at(3).position, (at(4).position - at(2).position) / 0.2, at(3).heading_rad,
+    query.start = {at(3).position, (at(4).position - at(2).position) / 0.2,
+                   (at(4).position - 2 * at(3).position + at(2).position) / 0.01, at(3).heading_rad,
                    wrap_angle(at(4).heading_rad - at(2).heading_rad) / 0.2};
     query.under_way.assign(s.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(3, s.size() - 1)),
                            s.end());
