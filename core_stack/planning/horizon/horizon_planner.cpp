@@ -62,16 +62,18 @@ class Search {
   }
 
  private:
-  /// The last plan, the shortest path to the goal fast and slowly, and to stay.
+  /// The last plan, the shortest path to the goal fast and slowly, and to stay and face as the goal asks.
   std::vector<Legs> first_guesses() {
     std::vector<Legs> out;
     if (q_.last) out.push_back(*q_.last);
     const Path path = to_goal_.find(map_, roadmap_, q_.start.position);
-    if (path.found() && path.points.size() > 1)
-      for (const double share : {1.0, 0.6})
-        out.push_back(along(path.points, share * q_.limits.max_speed_mps));
+    if (path.found() && path.points.size() > 1) {
+      const std::vector<Vec3> way = without_zigzags(path.points);
+      for (const double share : {1.0, 0.8, 0.5}) out.push_back(along(way, share * q_.limits.max_speed_mps));
+    }
     Legs stay;
-    for (Leg& leg : stay) leg.heading_rad = q_.start.heading_rad;
+    const bool faces = q_.turns && std::isfinite(q_.goal.heading_rad);
+    for (Leg& leg : stay) leg.heading_rad = faces ? q_.goal.heading_rad : q_.start.heading_rad;
     out.push_back(stay);
     return out;
   }
@@ -86,17 +88,36 @@ class Search {
     return points.back();
   }
 
+  /// The first metres of a path on the roadmap, by the farthest of its points that a clear line leads to.
+  std::vector<Vec3> without_zigzags(const std::vector<Vec3>& points) const {
+    std::vector<Vec3> out{points.front()};
+    double left_m = kHorizon_s * q_.limits.max_speed_mps;
+    for (std::size_t at = 0; at + 1 < points.size() && left_m > 0;) {
+      std::size_t next = at + 1;
+      while (next + 1 < points.size() && (points[next + 1] - points[at]).norm() < left_m &&
+             roadmap_.segment_clear(points[at], points[next + 1], q_.clearance_m))
+        ++next;
+      left_m -= (points[next] - points[at]).norm();
+      out.push_back(points[next]);
+      at = next;
+    }
+    return out;
+  }
+
+  /// Legs whose roll-out is at the path's point at the end of each.
   Legs along(const std::vector<Vec3>& points, double speed_mps) const {
     Legs legs;
-    Vec3 from = q_.start.position;
-    double heading_rad = q_.start.heading_rad;
+    MotionState s = q_.start;
+    double flown_m = 0;
     for (int i = 0; i < kLegs; ++i) {
-      const Vec3 to = point_at(points, speed_mps * (i + 1) * seconds(kLeg));
-      Vec3 v = (to - from) / seconds(kLeg);
-      if (v.norm() > speed_mps) v *= speed_mps / v.norm();
-      if (q_.turns && v.head<2>().norm() > kFlies_mps) heading_rad = std::atan2(v.y(), v.x());
-      legs[static_cast<std::size_t>(i)] = {v, heading_rad};
-      from = to;
+      const Vec3 from = s.position, to = point_at(points, flown_m + speed_mps * seconds(kLeg));
+      Leg& leg = legs[static_cast<std::size_t>(i)];
+      leg.velocity_mps = at_most(velocity_to(to, s), speed_mps);
+      const Vec3& v = leg.velocity_mps;
+      leg.heading_rad =
+          q_.turns && v.head<2>().norm() > kFlies_mps ? std::atan2(v.y(), v.x()) : s.heading_rad;
+      s = end_of_leg(s, leg, q_.limits);
+      flown_m += (s.position - from).norm();
     }
     return legs;
   }

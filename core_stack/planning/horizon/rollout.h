@@ -27,6 +27,11 @@ struct Rollout {
   MotionState end;                        // of the last leg, before it brakes
 };
 
+/// The motion at the end of one leg.
+MotionState end_of_leg(const MotionState& start, const Leg& leg, const MotionLimits& limits);
+/// The velocity of a leg from `s` that ends at `to`, were accelerations not limited.
+Vec3 velocity_to(const Vec3& to, const MotionState& s);
+
 /// Speeds stay within the limits if those of the legs and of the start do. It brakes with `braking_mps2`.
 Rollout roll_out(const MotionState& start, const Legs& legs, const MotionLimits& limits, double braking_mps2);
 

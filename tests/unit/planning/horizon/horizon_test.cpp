@@ -100,6 +100,17 @@ TEST(Rollout, KeepsToTheLimitsAndEndsAtRest) {
   });
 }
 
+TEST(Rollout, ALegEndsWhereItIsToIfAccelerationSuffices) {
+  MotionLimits l = limits();
+  l.max_acceleration_mps2 = l.max_jerk_mps3 = 1e3;
+  l.max_speed_mps = 10;
+  MotionState s;
+  s.velocity_mps = {1, -0.5, 0.2};
+  const Vec3 to(1.5, 0.5, -0.3);
+  const MotionState end = end_of_leg(s, {velocity_to(to, s), 0}, l);
+  EXPECT_LT((end.position - to).norm(), 1e-9);
+}
+
 class HorizonTest : public ::testing::Test {
  protected:
   HorizonTest() : map(hall(16, changes)) {
