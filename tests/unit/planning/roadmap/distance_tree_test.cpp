@@ -66,6 +66,27 @@ TEST(DistanceTree, ARockfallIsFlownAroundOrSaidToLeaveNoWay) {
   EXPECT_EQ(length(rockfall(map, 0, false)), straight);
 }
 
+TEST(DistanceTree, AnEstimateIsWithinABlockOfTheLength) {
+  std::vector<CellChange> changes;
+  const VoxelMap map = ring(changes);
+  Roadmap roadmap{kOptions};
+  DistanceTree tree;
+  roadmap.update(map, changes);
+  tree.update(roadmap, {1, 1, 1});
+  Random random(1);
+  int estimated = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 from(random.uniform(-0.2, 12.2), random.uniform(-0.2, 8.2), random.uniform(0, 2));
+    const std::optional<double> length_m = tree.length_m(map, roadmap, from),
+                                estimate_m = tree.estimated_length_m(roadmap, from);
+    if (!estimate_m) continue;  // not in a clear cell
+    ++estimated;
+    ASSERT_TRUE(length_m);
+    EXPECT_NEAR(*estimate_m, *length_m, 0.8) << from.transpose();
+  }
+  EXPECT_GT(estimated, 500);
+}
+
 TEST(DistanceTree, KeptUpToDateEqualsBuiltFromScratchAndDijkstra) {
   int reached = 0;
   rc::check("distances", [&] {
