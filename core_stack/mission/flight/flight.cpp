@@ -11,8 +11,6 @@ constexpr double kControlPeriod_s = 0.01;
 constexpr double kOffGround_m = 0.15, kGravity_mps2 = 9.81;
 constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: then predicted samples replace the IMU
 
-/// Fraction of the acceleration limit used for braking distances; the rest is for tracking.
-constexpr double kBrakingFraction = 0.8;
 /// No later motion depends on a brake's timing, so it may use nearly the full acceleration.
 constexpr double kEmergencyFraction = 0.95;
 

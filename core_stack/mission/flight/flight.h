@@ -32,6 +32,9 @@ MotionLimits slowed(MotionLimits limits, std::optional<double> max_speed_mps);
 /// The angle to turn when looking around: a full turn less the widest camera's view, with a little overlap.
 double turn_to_see_all_around(const VehicleDescription& vehicle);
 
+/// Fraction of the acceleration limit used for braking distances; the rest is for tracking.
+constexpr double kBrakingFraction = 0.8;
+
 class Flight {
  public:
   Flight(const CoreOptions& options, const VehicleDescription& vehicle);

@@ -5,7 +5,6 @@
 namespace karst::core {
 namespace {
 
-constexpr double kBrakingFraction = 0.8;  // of the acceleration limit; the rest is for tracking
 constexpr TimeNs kSteeringPeriod = 200 * kMillisecond, kBudget = 100 * kMillisecond;
 constexpr double kSame_m = 0.01;
 /// A plan that begins farther from where the vehicle is by then is not flown: it would cut a corner.
@@ -63,7 +62,8 @@ bool Steering::goal_waits() const {
 }
 
 MotionLimits Steering::limits(const Goal& goal) const {
-  return onboard_.flight.limits_of_plans(goal.max_speed_mps > 0 ? std::optional(goal.max_speed_mps) : std::nullopt);
+  return onboard_.flight.limits_of_plans(goal.max_speed_mps > 0 ? std::optional(goal.max_speed_mps)
+                                                                : std::nullopt);
 }
 
 HorizonQuery Steering::query(TimeNs at) const {

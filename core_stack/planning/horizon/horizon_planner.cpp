@@ -25,19 +25,13 @@ struct Candidate {
   double value_s = 0, time_left_s = 0;
 };
 
-double longest_m(const std::vector<ViewRay>& rays) {
-  double out = 0;
-  for (const ViewRay& r : rays) out = std::max(out, r.range_m);
-  return out;
-}
-
 class Search {
  public:
   Search(const VoxelMap& map, const Roadmap& roadmap, const DistanceTree& to_goal,
          const std::vector<ViewRay>& rays, const HorizonQuery& q)
       : map_(map), roadmap_(roadmap), to_goal_(to_goal), rays_(rays), q_(q), random_(q.seed) {
     if (q.worth_s_per_m3 > 0)
-      local_.emplace(map, q.start.position, kHorizon_s * q.limits.max_speed_mps + longest_m(rays));
+      local_.emplace(map, q.start.position, kHorizon_s * q.limits.max_speed_mps, rays);
   }
 
   std::optional<HorizonPlan> run() {
@@ -176,10 +170,13 @@ class Search {
     const double v = s.velocity_mps.norm(), a = q_.limits.max_acceleration_mps2,
                  v_max = q_.limits.max_speed_mps;
     const double stop_m = v * v / (2 * q_.braking_mps2);
-    const Vec3 stop = s.position + (stop_m > 0.05 ? stop_m / v : 0) * s.velocity_mps;
-    std::optional<double> left_m = length_to_goal_m(stop);
+    std::optional<double> left_m;
+    if (stop_m > 0.05) {
+      left_m = length_to_goal_m(s.position + stop_m / v * s.velocity_mps);
+      if (left_m) *left_m += stop_m;
+    }
+    if (!left_m) left_m = length_to_goal_m(s.position);
     if (!left_m) return std::nullopt;
-    *left_m += (stop - s.position).norm();
     // It never reaches v_max on a short way; at the goal nothing is left.
     double left_s = *left_m / v_max + std::min(std::max(0.0, v_max - v) / a, std::sqrt(*left_m / a));
     if (!q_.turns || !std::isfinite(q_.goal.heading_rad)) return left_s;

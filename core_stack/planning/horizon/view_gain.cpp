@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSpacing_rad = 0.105;
 constexpr double kMostCells = 64;      // from the middle to a side
+constexpr double kManyCells = 30;      // for a ray
 constexpr double kLidarRange_m = 8.0;  // farther away a scan is too sparse to close a frontier
 constexpr double kLidarSpacing_rad = 0.26;
 
@@ -43,23 +44,28 @@ std::vector<ViewRay> view_rays(const VehicleDescription& vehicle) {
   return rays;
 }
 
-ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m)
-    : resolution_m_(2 * map.resolution_m()) {
-  const auto half = static_cast<std::int32_t>(std::min(kMostCells, std::ceil(half_edge_m / resolution_m_)));
-  const CellKey k = map.key_of(center), middle{k.x >> 1, k.y >> 1, k.z >> 1};
-  low_ = {middle.x - half, middle.y - half, middle.z - half};
+ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double reach_m, std::span<const ViewRay> rays) {
+  double longest_m = 0;
+  for (const ViewRay& r : rays) longest_m = std::max(longest_m, r.range_m);
+  const int shift = longest_m > kManyCells * map.resolution_m() ? 1 : 0;  // halves cells' coordinates
+  resolution_m_ = map.resolution_m() * (1 << shift);
+  const auto half =
+      static_cast<std::int32_t>(std::min(kMostCells, std::ceil((reach_m + longest_m) / resolution_m_)));
+  const CellKey k = map.key_of(center);
+  low_ = {(k.x >> shift) - half, (k.y >> shift) - half, (k.z >> shift) - half};
   edge_ = 2 * half + 1;
   const auto e = static_cast<std::size_t>(edge_);
   cells_.assign(e * e * e, Cell::unknown);
   seen_by_.assign(cells_.size(), 0);
-  // Rock anywhere in it makes a cell rock; at least half of a free one is known.
   std::vector<std::uint8_t> known(cells_.size(), 0);
-  const CellKey high = low_ + CellKey{edge_, edge_, edge_};
-  map.for_each_in_box({2 * low_.x, 2 * low_.y, 2 * low_.z}, {2 * high.x - 1, 2 * high.y - 1, 2 * high.z - 1},
+  const int enough = shift == 0 ? 1 : 4;
+  const CellKey beyond = low_ + CellKey{edge_, edge_, edge_};
+  map.for_each_in_box({low_.x << shift, low_.y << shift, low_.z << shift},
+                      {(beyond.x << shift) - 1, (beyond.y << shift) - 1, (beyond.z << shift) - 1},
                       [&](const CellKey& fine, Cell c) {
-                        const std::size_t at = index_of({fine.x >> 1, fine.y >> 1, fine.z >> 1});
+                        const std::size_t at = index_of({fine.x >> shift, fine.y >> shift, fine.z >> shift});
                         if (c == Cell::occupied) cells_[at] = Cell::occupied;
-                        if (c == Cell::free && ++known[at] >= 4 && cells_[at] == Cell::unknown)
+                        if (c == Cell::free && ++known[at] >= enough && cells_[at] == Cell::unknown)
                           cells_[at] = Cell::free;
                       });
   if (map.region()) leave_out_beyond(*map.region());

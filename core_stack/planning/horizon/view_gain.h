@@ -30,7 +30,9 @@ struct ViewPose {
 /// its boundary.
 class ViewMap {
  public:
-  ViewMap(const VoxelMap& map, const Vec3& center, double half_edge_m);
+  /// For rays from poses up to `reach_m` away from the center. Where rays are longer than 30 of the map's
+  /// cells, a cell stands for 2 x 2 x 2 of them: it is rock if one is, and free if half are known to be.
+  ViewMap(const VoxelMap& map, const Vec3& center, double reach_m, std::span<const ViewRay> rays);
 
   /// The unknown volume in m^3 that will be seen from `poses`. Each cell counts once. A ray ends at rock.
   /// Volume behind the first unknown cell of a ray counts less with depth, by a factor of e every
@@ -43,7 +45,7 @@ class ViewMap {
   void leave_out_beyond(const FlightRegion& region);
   std::size_t index_of(const CellKey& k) const;
 
-  double resolution_m_;
+  double resolution_m_ = 0;
   CellKey low_;
   std::int32_t edge_;
   std::vector<Cell> cells_;

@@ -37,7 +37,7 @@ VoxelMap hall(double known_m, std::vector<CellChange>& changes, double known_y_m
 TEST(ViewGain, OfNothingKnownIsTheIntegralOverTheView) {
   const VoxelMap map{MapOptions{}};
   const std::vector<ViewRay> rays = view_rays(camera_vehicle());
-  ViewMap view(map, Vec3::Zero(), 6);
+  ViewMap view(map, Vec3::Zero(), 2, rays);
   const double range_m = 0.9 * 4.5, lambda = ViewMap::kExpected_m;
   double solid_angle_sr = 0;
   for (const ViewRay& r : rays) solid_angle_sr += r.solid_angle_sr;
@@ -52,7 +52,7 @@ TEST(ViewGain, CountsEachCellOnceAndNothingBehindRock) {
   std::vector<CellChange> changes;
   VoxelMap map = hall(6, changes);
   const std::vector<ViewRay> rays = view_rays(camera_vehicle());
-  ViewMap view(map, Vec3(4, 4, 2), 8);
+  ViewMap view(map, Vec3(4, 4, 2), 4, rays);
   const ViewPose ahead{{4, 4, 2}, 0}, back{{4, 4, 2}, std::numbers::pi};
   const double once = view.gain_m3(rays, std::array{ahead});
   EXPECT_GT(once, 1);
@@ -60,8 +60,21 @@ TEST(ViewGain, CountsEachCellOnceAndNothingBehindRock) {
   EXPECT_DOUBLE_EQ(view.gain_m3(rays, std::array{back}), 0);
   for (int y = 0; y < 40; ++y)
     for (int z = 0; z < 20; ++z) map.assign({29, y, z}, 1, 2.0f);  // a wall before what is unknown
-  ViewMap walled(map, Vec3(4, 4, 2), 8);
+  ViewMap walled(map, Vec3(4, 4, 2), 4, rays);
   EXPECT_DOUBLE_EQ(walled.gain_m3(rays, std::array{ahead}), 0);
+}
+
+TEST(ViewGain, OfLongRaysIsAboutThatOfShortOnesInTheSameRoom) {
+  std::vector<CellChange> changes;
+  const VoxelMap map = hall(6, changes);
+  std::vector<ViewRay> rays = view_rays(camera_vehicle());
+  for (ViewRay& r : rays) r.range_m = 5.9;  // the map's cells
+  ViewMap fine(map, Vec3(4, 4, 2), 0, rays);
+  const std::array ahead{ViewPose{{4, 4, 2}, 0}};
+  const double fine_m3 = fine.gain_m3(rays, ahead);
+  for (ViewRay& r : rays) r.range_m = 6.1;  // cells of twice the size
+  ViewMap coarse(map, Vec3(4, 4, 2), 0, rays);
+  EXPECT_NEAR(coarse.gain_m3(rays, ahead) / fine_m3, 1, 0.2);
 }
 
 TEST(Rollout, KeepsToTheLimitsAndEndsAtRest) {
@@ -195,7 +208,7 @@ TEST_F(HorizonTest, TurnsToWhatItHasNotSeenWhereThatIsWorthIt) {
   query.worth_s_per_m3 = 0.5;
   const auto sees = plan();
   ASSERT_TRUE(fast && sees);
-  ViewMap view(map, query.start.position, 12);
+  ViewMap view(map, query.start.position, 8, rays);
   const auto gain_m3 = [&](const HorizonPlan& p) {
     const auto pose = [&](std::size_t i) {
       return ViewPose{p.samples[i].position, p.samples[i].heading_rad};
