@@ -18,8 +18,9 @@ struct ViewGraph {
 
 /// One viewpoint in each cube of `spacing_m` that holds flyable cells: that nearest to its middle. Places are
 /// joined if the segment between them stays in flyable cells and their cubes are at most two apart in each
-/// axis. Paths on this graph are a few per cent longer than the shortest. Throws InputError if there are more
-/// than 65535.
+/// axis. Where that leaves eight places or more alone, as behind a narrow passage, places along the cells of
+/// a way there are added. Paths on this graph are a few per cent longer than the shortest. Throws InputError
+/// if there are more than 65535.
 ViewGraph view_graph(const evaluation::Reachable& r, const core::Vec3& start, double spacing_m);
 
 /// A way on the graph with its corners cut where flyable cells allow; it still passes each of `targets` in
