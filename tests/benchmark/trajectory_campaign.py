@@ -17,7 +17,7 @@ import profile_agreement
 import selection_campaign as campaign
 
 KINDS = ["sampled", "horizon"]
-METRICS = ["coverage_auc", "coverage", "exploring_speed_mps", "restricted_t50_s", "restricted_t90_s", "path_m",
+METRICS = ["coverage_auc", "coverage", "exploring_speed_mps", "restricted_t50_s", "restricted_t90_s", "path_length_m",
            "min_clearance_m"]
 
 
