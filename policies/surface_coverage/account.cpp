@@ -73,10 +73,24 @@ class OwnAccount final : public Account {
 
   const ImagingCamera& camera() const override { return camera_; }
 
+  /// In the order of the map's surface(): by z, then y, then x.
   std::vector<SurfaceCell> unimaged(const Box& box) const override {
+    if (!holds(known_box_, box)) read_around(box);
+    // The cells whose centre lies in the box, as the host counts them.
+    const auto first = [&](double v) { return std::lround(std::ceil(v / resolution_m_ - 0.5)); };
+    const auto last = [&](double v) { return std::lround(std::floor(v / resolution_m_ - 0.5)); };
+    const CellId low{first(box.low.x), first(box.low.y), first(box.low.z)},
+        high{last(box.high.x), last(box.high.y), last(box.high.z)};
     std::vector<SurfaceCell> out;
-    for (const SurfaceCell& c : surface(box))
-      if (memory_.imaged_.count(cell_id(c.center, resolution_m_)) == 0) out.push_back(c);
+    const auto row_before = [](const KnownCell& c, const CellId& k) {
+      return std::tie(c.id.z, c.id.y) < std::tie(k.z, k.y);
+    };
+    auto at = known_.begin();
+    for (long z = low.z; z <= high.z && at != known_.end(); ++z) {
+      at = std::lower_bound(at, known_.end(), CellId{0, low.y, z}, row_before);
+      for (; at != known_.end() && at->id.z == z && at->id.y <= high.y; ++at)
+        if (at->id.x >= low.x && at->id.x <= high.x) out.push_back(at->cell);
+    }
     return out;
   }
 
@@ -111,6 +125,34 @@ class OwnAccount final : public Account {
   }
 
  private:
+  struct KnownCell {
+    CellId id;
+    SurfaceCell cell;
+  };
+
+  static bool holds(const Box& outer, const Box& inner) {
+    return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y && outer.low.z <= inner.low.z &&
+           outer.high.x >= inner.high.x && outer.high.y >= inner.high.y && outer.high.z >= inner.high.z;
+  }
+
+  /// Hundreds of looks in a decision overlap: what is not imaged is read once for all of them.
+  void read_around(const Box& box) const {
+    const double margin_m = 2 * camera_.sensor.max_range_m;
+    const Vec3 margin{margin_m, margin_m, margin_m};
+    Box all{box.low - margin, box.high + margin};
+    if (known_box_.low.x <= known_box_.high.x) {
+      all.low = {std::min(all.low.x, known_box_.low.x), std::min(all.low.y, known_box_.low.y),
+                 std::min(all.low.z, known_box_.low.z)};
+      all.high = {std::max(all.high.x, known_box_.high.x), std::max(all.high.y, known_box_.high.y),
+                  std::max(all.high.z, known_box_.high.z)};
+    }
+    known_box_ = all;
+    known_.clear();
+    for (const SurfaceCell& c : surface(all))
+      if (const CellId id = cell_id(c.center, resolution_m_); memory_.imaged_.count(id) == 0)
+        known_.push_back({id, c});
+  }
+
   std::vector<SurfaceCell> surface(const Box& box) const {
     static constexpr int kFaces[6][3] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
     const std::vector<Vec3> centers = request_.map.surface(box);
@@ -133,6 +175,9 @@ class OwnAccount final : public Account {
   const OwnMemory& memory_;
   ImagingCamera camera_;
   double resolution_m_;
+  // What is not imaged in a box, sorted by z, then y, then x.
+  mutable Box known_box_{{1, 1, 1}, {0, 0, 0}};
+  mutable std::vector<KnownCell> known_;
 };
 
 std::unique_ptr<Account> OwnMemory::update(const karst::Request& request) {
@@ -140,7 +185,7 @@ std::unique_ptr<Account> OwnMemory::update(const karst::Request& request) {
   const double resolution_m = request.map.resolution_m();
   for (const Vec3& c : account->seen(request.position(), request.state.orientation))
     imaged_.insert(cell_id(c, resolution_m));
-  return account;
+  return std::make_unique<OwnAccount>(request, *this);  // without what it read before these were imaged
 }
 
 }  // namespace surface_coverage

@@ -29,7 +29,7 @@ double blocks_within(double radius_m, double resolution_m) {
 class GraphSearch {
  public:
   explicit GraphSearch(const RoadmapGraph& graph, EqualPaths equal = EqualPaths::as_stored)
-      : graph_(graph), equal_(equal) {
+      : graph_(graph), links_(graph.links()), equal_(equal) {
     std::uint32_t count = 0;
     for (const RoadmapTile& t : graph.tiles) {
       base_.push_back(count);
@@ -57,17 +57,17 @@ class GraphSearch {
       if (done_[top.index]) continue;
       done_[top.index] = true;
       if (settled(top.index, length_[top.index])) return;
-      const Vec3 p = graph_.position_of(top.node);
-      graph_.for_each_neighbour(top.node, [&](const NodeRef& n) {
-        const std::uint32_t i = index_of(n);
-        if (done_[i]) return;
-        const Vec3 q = graph_.position_of(n);
-        const double length = length_[top.index] + (q - p).norm();
-        if (length >= length_[i]) return;
+      const TileLinks& tile = links_[top.node.tile];
+      for (std::uint32_t k = tile.first[top.node.local]; k < tile.first[top.node.local + 1]; ++k) {
+        const RoadmapLink& link = tile.links[k];
+        const std::uint32_t i = index_of(link.node);
+        if (done_[i]) continue;
+        const double length = length_[top.index] + link.length_m;
+        if (length >= length_[i]) continue;
         length_[i] = length;
         parent_[i] = top.index;
-        push({length + rest(q), i, n});
-      });
+        push({length + (target ? rest(graph_.position_of(link.node)) : 0.0), i, link.node});
+      }
     }
   }
 
@@ -78,6 +78,7 @@ class GraphSearch {
     const auto tile = std::upper_bound(base_.begin(), base_.end(), index) - base_.begin() - 1;
     return {static_cast<std::uint32_t>(tile), index - base_[static_cast<std::size_t>(tile)]};
   }
+  std::size_t size() const { return length_.size(); }
   double length(std::uint32_t index) const { return length_[index]; }
   std::uint32_t parent(std::uint32_t index) const { return parent_[index]; }
 
@@ -103,6 +104,7 @@ class GraphSearch {
   }
 
   const RoadmapGraph& graph_;
+  const std::vector<TileLinks>& links_;
   EqualPaths equal_;
   std::vector<std::uint32_t> base_, parent_;
   std::vector<double> length_;
@@ -247,15 +249,18 @@ std::vector<double> Roadmap::distances(const VoxelMap& map, const Vec3& from, st
       out[i] = escape_m + straight;
       continue;
     }
-    goal_joins[i] = g.joins(*goal);
+    goal_joins[i] = g.kept_joins(*goal);
     for (const Join& j : goal_joins[i]) wanted.push_back(search.index_of(j.node));
   }
-  std::sort(wanted.begin(), wanted.end());
-  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  std::size_t left = wanted.size();
+  std::vector<char> is_wanted(search.size(), false);
+  std::size_t left = 0;
+  for (const std::uint32_t node : wanted) {
+    left += !is_wanted[node];
+    is_wanted[node] = true;
+  }
   if (left > 0)
     search.run(g.joins(start), std::nullopt, [&](std::uint32_t node, double length_m) {
-      return length_m > max_m || (std::binary_search(wanted.begin(), wanted.end(), node) && --left == 0);
+      return length_m > max_m || (is_wanted[node] && --left == 0);
     });
   for (std::size_t i = 0; i < goals.size(); ++i)
     for (const Join& j : goal_joins[i])

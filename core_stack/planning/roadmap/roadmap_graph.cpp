@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 namespace karst::core {
@@ -74,6 +75,7 @@ void RoadmapGraph::mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirt
         if (i == TileTable::none) i = add_tile({x, y, z});
         if (!tiles[i].dirty) dirty.push_back(i);
         tiles[i].dirty = true;
+        tiles[i].touched = updates;
       }
 }
 
@@ -95,6 +97,63 @@ void RoadmapGraph::rebuild(std::uint32_t tile_index) {
   }
   tile.first[kTileBlocks] = static_cast<std::uint16_t>(tile.nodes.size());
   if (tile.nodes != before) tile.changed = updates;
+}
+
+bool RoadmapGraph::links_stand(std::uint32_t tile_index) const {
+  const std::uint64_t as_of = links_[tile_index].as_of;
+  const auto& around = tiles[tile_index].around;  // itself as well
+  return as_of > 0 && std::all_of(around.begin(), around.end(), [&](std::uint32_t i) {
+           return i == TileTable::none || tiles[i].changed <= as_of;
+         });
+}
+
+void RoadmapGraph::link(std::uint32_t tile_index) const {
+  TileLinks& of = links_[tile_index];
+  of.first.assign(1, 0);
+  of.links.clear();
+  for (std::uint32_t n = 0; n < tiles[tile_index].nodes.size(); ++n) {
+    const Vec3 p = position_of({tile_index, n});
+    for_each_neighbour({tile_index, n}, [&](const NodeRef& m) {
+      of.links.push_back({(position_of(m) - p).norm(), m});
+    });
+    of.first.push_back(static_cast<std::uint32_t>(of.links.size()));
+  }
+}
+
+const std::vector<TileLinks>& RoadmapGraph::links() const {
+  const std::lock_guard lock(kept_);
+  if (linked_ == updates) return links_;
+  linked_ = updates;
+  links_.resize(tiles.size());
+  for (std::uint32_t i = 0; i < tiles.size(); ++i) {
+    if (!links_stand(i)) link(i);
+    links_[i].as_of = updates;
+  }
+  return links_;
+}
+
+/// Whether a cell has changed since that may alter the joins of p. They look at the blocks around that of p,
+/// and at what lies nearer to the lines there than the clearance.
+bool RoadmapGraph::touched_after(std::uint64_t update, const Vec3& p) const {
+  const CellKey k = free.key_of(p);
+  const std::int32_t r = 9 + static_cast<std::int32_t>(std::ceil(clearance_m / free.resolution_m()));
+  const TileKey a = tile_of({k.x - r, k.y - r, k.z - r}), b = tile_of({k.x + r, k.y + r, k.z + r});
+  for (std::int32_t z = a.z; z <= b.z; ++z)
+    for (std::int32_t y = a.y; y <= b.y; ++y)
+      for (std::int32_t x = a.x; x <= b.x; ++x)
+        if (const std::uint32_t i = table.find({x, y, z}); i != TileTable::none && tiles[i].touched > update)
+          return true;
+  return false;
+}
+
+std::vector<Join> RoadmapGraph::kept_joins(const Vec3& p) const {
+  constexpr std::size_t kMost = 2000;
+  const std::lock_guard lock(kept_);
+  if (joins_of_.size() > kMost) joins_of_.clear();
+  KeptJoins& kept = joins_of_[{p.x(), p.y(), p.z()}];
+  if (kept.as_of == 0 || touched_after(kept.as_of, p)) kept.joins = joins(p);
+  kept.as_of = updates;
+  return kept.joins;
 }
 
 std::vector<Join> RoadmapGraph::joins(const Vec3& p) const {

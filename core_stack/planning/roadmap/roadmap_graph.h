@@ -1,5 +1,8 @@
 // The roadmap's data: clear cells by tile, and the nodes built from them. Private to planning.
 #pragma once
+#include <map>
+#include <mutex>
+
 #include "core_stack/planning/free_space/block_bits.h"
 #include "core_stack/planning/free_space/free_tiles.h"
 #include "core_stack/planning/roadmap/roadmap.h"
@@ -14,6 +17,24 @@ struct RoadmapNode {
   bool operator==(const RoadmapNode&) const = default;
 };
 
+/// A node's identifier: its tile, and its index in the tile's list.
+struct NodeRef {
+  std::uint32_t tile = 0, local = 0;
+};
+
+/// The way from a node to one that it is joined to.
+struct RoadmapLink {
+  double length_m;
+  NodeRef node;
+};
+
+/// The links of a tile's nodes.
+struct TileLinks {
+  std::uint64_t as_of = 0;           // the update that they were last compared with
+  std::vector<std::uint32_t> first;  // links of node n: first[n] to first[n + 1]
+  std::vector<RoadmapLink> links;
+};
+
 struct RoadmapTile {
   std::array<std::uint16_t, kTileBlocks + 1> first{};  // nodes of block b: first[b] to first[b + 1]
   std::vector<RoadmapNode> nodes;
@@ -21,11 +42,7 @@ struct RoadmapTile {
       around;  // the tile at (dx, dy, dz), each -1, 0, 1: index dx + 1 + 3 (dy + 1) + 9 (dz + 1)
   bool dirty = false;
   std::uint64_t changed = 0;  // the update, counted from 1, that last changed its nodes
-};
-
-/// A node's identifier: its tile, and its index in the tile's list.
-struct NodeRef {
-  std::uint32_t tile = 0, local = 0;
+  std::uint64_t touched = 0;  // the update that last changed a cell in it or near it
 };
 
 /// A connection from a point to a node, straight or through the cell `via`.
@@ -78,8 +95,14 @@ struct RoadmapGraph {
                              });
     }
   }
+  /// All links, by tile; in the order of for_each_neighbour. What has not changed since the last call is
+  /// kept. Valid until the next update. Any thread may call it.
+  const std::vector<TileLinks>& links() const;
   /// Connections from a clear point into the graph.
   std::vector<Join> joins(const Vec3& p) const;
+  /// The same for a point that is asked for again and again: kept until a cell changes near it. Any thread
+  /// may call it.
+  std::vector<Join> kept_joins(const Vec3& p) const;
   /// Clear cells from a to b, both included, in the blocks that contain them. They must be connected there.
   std::vector<CellKey> cells_between(const CellKey& a, const CellKey& b) const;
 
@@ -96,6 +119,19 @@ struct RoadmapGraph {
   std::uint32_t add_tile(const TileKey& t);
   void mark_dirty(const CellKey& k, std::vector<std::uint32_t>& dirty);
   void rebuild(std::uint32_t tile_index);
+  bool links_stand(std::uint32_t tile_index) const;
+  void link(std::uint32_t tile_index) const;
+  bool touched_after(std::uint64_t update, const Vec3& p) const;
+
+  // What the searches found out of the data above, and may find again.
+  struct KeptJoins {
+    std::uint64_t as_of = 0;
+    std::vector<Join> joins;
+  };
+  mutable std::mutex kept_;
+  mutable std::vector<TileLinks> links_;
+  mutable std::uint64_t linked_ = 0;  // the update that the links are of
+  mutable std::map<std::array<double, 3>, KeptJoins> joins_of_;
 };
 
 }  // namespace karst::core

@@ -21,12 +21,19 @@ class SensorRays {
 
   /// Number of unknown cells within range that a ray from the viewpoint reaches without meeting an occupied
   /// cell. Unknown cells are transparent; each is counted once.
-  std::uint64_t newly_seen(const core::VoxelMap& map, const karst_viewpoint_t& from) const;
+  std::uint64_t newly_seen(const core::VoxelMap& map, const karst_viewpoint_t& from);
+  const std::vector<core::Vec3>& directions() const { return directions_; }
 
  private:
+  void turn(const core::Quat& T_world_sensor);
+
   core::Pose T_body_sensor_;
   double min_range_m_, max_range_m_;
   std::vector<core::Vec3> directions_;  // unit
+  // Of the last viewpoint; the memory is kept for the next one.
+  std::vector<double> turned_;
+  core::Vec3 low_, high_;  // bounds of the turned directions, the eye included
+  std::vector<std::uint8_t> bytes_;
 };
 
 }  // namespace karst::host

@@ -241,7 +241,7 @@ struct Services : Serving {
           throw Refusal{KARST_ERROR_ARGUMENT, "sensor " + std::to_string(j) + ": " + fault};
         if (const std::string excess = sensor_excess(sensors[j], map.resolution_m()); !excess.empty())
           throw Refusal{KARST_ERROR_LIMIT, "sensor " + std::to_string(j) + ": " + excess};
-        const SensorRays rays(sensors[j], map.resolution_m());
+        SensorRays rays(sensors[j], map.resolution_m());
         for (std::uint64_t i = 0; i < count; ++i) {
           check_not_abandoned(s);
           require(finite(viewpoints[i].position) && std::isfinite(viewpoints[i].heading_rad),

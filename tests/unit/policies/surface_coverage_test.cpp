@@ -11,6 +11,7 @@ namespace {
 
 using karst::Vec3;
 using karst::testing::Bench;
+using karst::testing::DrawnHost;
 using karst::testing::DrawnMap;
 
 /// A hall, walled all around; 's' in its middle, half way up. Cells of 0.5 m.
@@ -147,6 +148,33 @@ TEST(SurfaceCoverage, WithNothingToLookAtItGoesToTheFrontier) {
   const karst::Decision d = bench.decide();
   ASSERT_EQ(d.goals.size(), 1u);
   EXPECT_EQ(d.goals[0].frontier_id, 4u);
+}
+
+/// The cells of the map's surface, whatever boxes were asked for before, in the map's order.
+TEST(OwnMemory, TellsOfTheSurfaceInABoxAsTheMapDoes) {
+  const DrawnHost host(hall(14, 12, 7));
+  karst_request_t r{};
+  r.size = sizeof r;
+  r.map = host.map_handle();
+  r.state.orientation.w = 1;
+  const Vec3 middle = host.map().place('s');
+  r.state.position = middle + Vec3(0, 0, 100);  // from there nothing is seen
+  const karst::Request request(host.host(), r);
+  surface_coverage::OwnMemory memory;
+  const auto account = memory.update(request);
+  std::size_t cells = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 at = middle + Vec3(0.37 * (i % 7) - 1.5, 0.25 * (i % 13) - 2, 0.5 * (i % 5) - 1);
+    karst::Box box = karst::box_around(at, i == 40 ? 30.0 : 0.25 * (i % 11));
+    box.high.x += i % 3;
+    const std::vector<Vec3> expected = request.map.surface(box);
+    const std::vector<karst::SurfaceCell> found = account->unimaged(box);
+    ASSERT_EQ(found.size(), expected.size()) << i;
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_EQ(karst::distance(found[k].center, expected[k]), 0) << i;
+    cells += found.size();
+  }
+  EXPECT_GT(cells, 500u);
 }
 
 TEST(Patches, AreCellsOfOneCubeThatFaceTheSameWay) {

@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
+#include <set>
 
+#include "sdk/host/services/translation.h"
 #include "tests/unit/host/services/drawn.h"
 
 namespace karst::test {
@@ -107,6 +111,71 @@ TEST(Gain, TurningTheVehicleTurnsACamera) {
   const auto seen = [&](double heading) { return by_rays(room, camera(8.0), {{3.25, 3.1, 2.4}, heading}); };
   EXPECT_GT(seen(0.0), 0u);
   EXPECT_EQ(seen(std::numbers::pi / 2), 0u);
+}
+
+/// Ray by ray, one cell at a time.
+std::uint64_t by_single_rays(const core::VoxelMap& map, const karst_sensor_t& s, const karst_viewpoint_t& v) {
+  const karst_quaternion_t& q = s.T_body_sensor.orientation;
+  const core::Pose T_world_sensor =
+      core::Pose{host::to_core(v.position), core::from_heading(v.heading_rad)} *
+      core::Pose{host::to_core(s.T_body_sensor.position), core::Quat(q.w, q.x, q.y, q.z)};
+  const core::Vec3 eye = T_world_sensor.position / map.resolution_m();
+  const double furthest = s.max_range_m / map.resolution_m(), nearest = s.min_range_m / map.resolution_m();
+  std::set<core::CellKey> seen;
+  const host::SensorRays rays(s, map.resolution_m());
+  for (const core::Vec3& ray : rays.directions()) {
+    const core::Vec3 d = T_world_sensor.orientation * ray;
+    std::array<std::int32_t, 3> cell;
+    std::array<double, 3> next, period;
+    for (int a = 0; a < 3; ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      const double floor = std::floor(eye[a]);
+      cell[i] = static_cast<std::int32_t>(floor);
+      next[i] = period[i] = d[a] == 0 ? HUGE_VAL : std::abs(1.0 / d[a]);
+      if (d[a] != 0) next[i] *= d[a] < 0 ? eye[a] - floor : floor + 1.0 - eye[a];
+    }
+    for (;;) {
+      const core::CellKey k{cell[0], cell[1], cell[2]};
+      if (map.at(k) == core::Cell::occupied) break;
+      const double away = (core::Vec3(k.x + 0.5, k.y + 0.5, k.z + 0.5) - eye).norm();
+      if (map.at(k) == core::Cell::unknown && away >= nearest && away <= furthest) seen.insert(k);
+      const std::size_t yz = next[1] < next[2] ? 1 : 2, i = next[0] < next[yz] ? 0 : yz;
+      if (next[i] > furthest) break;
+      cell[i] += d[static_cast<int>(i)] < 0 ? -1 : 1;
+      next[i] += period[i];
+    }
+  }
+  return seen.size();
+}
+
+TEST(Gain, OfRaysWalkedTogetherIsThatOfEachRayByItself) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int i = 0; i < 30; ++i) {
+    core::VoxelMap map({.resolution_m = 0.2});
+    const auto blob = [&](int edge, float log_odds) {
+      const auto at = [&] { return static_cast<std::int32_t>(25 * uniform(random)); };
+      map.assign({at(), at(), at()}, edge, log_odds);
+    };
+    for (int n = 0; n < 60; ++n) blob(1 + n % 12, -1.0f);
+    for (int n = 0; n < 150; ++n) blob(1 + n % 3, 1.0f);
+    karst_sensor_t s = i % 3 == 0 ? lidar(4.0) : i % 3 == 1 ? camera(4.1) : upward_camera(3.9);
+    s.min_range_m = i % 2 == 0 ? 0.0 : 1.0;
+    s.T_body_sensor.position = {0.1, 0, 0.05};
+    karst_viewpoint_t from{{uniform(random), uniform(random), uniform(random)}, 3 * uniform(random)};
+    // On the borders of cells, along the axes: equal lengths, and rays that meet no border.
+    if (i % 5 == 0) from = {{0.3, 0.2, 0.15}, std::numbers::pi / 2 * (i / 5)};
+    EXPECT_EQ(host::SensorRays(s, 0.2).newly_seen(map, from), by_single_rays(map, s, from)) << i;
+  }
+}
+
+TEST(Gain, OfOneViewpointDoesNotDependOnTheOnesBefore) {
+  const core::VoxelMap room = to_core_map(room_with_door());
+  host::SensorRays rays(lidar(8.0), room.resolution_m());
+  const karst_viewpoint_t here{{3.25, 3.1, 2.4}, 0.0}, there{{4.6, 2.9, 2.2}, 1.0};
+  const std::uint64_t first = rays.newly_seen(room, here);
+  EXPECT_NE(rays.newly_seen(room, there), first);
+  EXPECT_EQ(rays.newly_seen(room, here), first);
 }
 
 TEST(SensorFault, NamesWhatIsWrong) {

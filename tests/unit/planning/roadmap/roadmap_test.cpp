@@ -86,6 +86,44 @@ TEST(Roadmap, UpdatedFromChangesEqualsBuiltFromScratch) {
   }
 }
 
+TEST(Roadmap, AnswersAreTheSameWhetherOrNotItWasAskedBefore) {
+  int found = 0, lost = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(seed);
+    VoxelMap map{MapOptions{}};
+    Roadmap asked{kOptions};
+    std::vector<std::vector<CellChange>> history;
+    std::vector<Vec3> goals;
+    for (int i = 0; i < 12; ++i) goals.push_back(point_in(random));
+    std::vector<double> before(goals.size(), std::numeric_limits<double>::infinity());
+    for (int step = 0; step < 12; ++step) {
+      // Free space near and far, and rock that appears in it.
+      const CellKey at{static_cast<std::int32_t>(random.bits() % 26),
+                       static_cast<std::int32_t>(random.bits() % 18),
+                       static_cast<std::int32_t>(random.bits() % 10)};
+      const CellKey size = step < 6 ? CellKey{14, 11, 9} : CellKey{3, 3, 3};
+      const double fraction = step < 6 ? 0.005 : 0.5;
+      testing::draw(
+          map, at, at + size,
+          [&](const CellKey&) { return random.uniform() < fraction ? Cell::occupied : Cell::free; },
+          &history.emplace_back());
+      asked.update(map, history.back());
+      Roadmap fresh{kOptions};
+      for (const std::vector<CellChange>& changes : history) fresh.update(map, changes);
+      const std::vector<double> lengths = asked.distances(map, goals[0], goals, 0.4);
+      EXPECT_EQ(lengths, fresh.distances(map, goals[0], goals, 0.4));
+      EXPECT_EQ(asked.find(map, goals[0], goals[1]).points, fresh.find(map, goals[0], goals[1]).points);
+      for (std::size_t i = 0; i < goals.size(); ++i) {
+        found += std::isfinite(lengths[i]) && lengths[i] != before[i];
+        lost += !std::isfinite(lengths[i]) && std::isfinite(before[i]);
+      }
+      before = lengths;
+    }
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_GT(lost, 5);
+}
+
 TEST(Roadmap, EquallyShortPathsAreChosenByPlaceInARebuiltRoadmapToo) {
   const VoxelMap map = random_map(5, kHall, 0.005);
   const std::vector<CellChange> cells = all_cells(map);
