@@ -29,11 +29,11 @@ class DistanceTree {
   /// Length in metres of the shortest path from `from` to the root on the roadmap, including an escape from a
   /// tight place; nothing if there is none.
   std::optional<double> length_m(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
-  /// About the same from a clear cell, many times faster: the lines to the nearest nodes are not checked, so it
-  /// may be too short by a fraction of a block. Nothing from any other cell.
+  /// About the same from a clear cell, many times faster: the lines to the nearest nodes are not checked, so
+  /// it may be too short by a fraction of a block. Nothing from any other cell.
   std::optional<double> estimated_length_m(const Roadmap& roadmap, const Vec3& from) const;
-  /// The path of length_m, with the search clearance. It is raw: pass it to refine_path. It depends on the current map
-  /// only, not on the map's history.
+  /// The path of length_m, with the search clearance. It is raw: pass it to refine_path. It depends on the
+  /// current map only, not on the map's history.
   Path find(const VoxelMap& map, const Roadmap& roadmap, const Vec3& from) const;
 
   /// Number of nodes whose distance the last update visited: its cost.

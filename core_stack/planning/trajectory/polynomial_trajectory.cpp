@@ -135,7 +135,6 @@ void sample(const Polynomial& polynomial, double start_speed_mps, const MotionLi
   if (heading.goal_heading_rad) end_facing(course, *heading.goal_heading_rad, out.samples);
 }
 
-
 }  // namespace
 
 std::vector<std::size_t> corners(const std::vector<Vec3>& points, double tolerance_m, double max_m) {
