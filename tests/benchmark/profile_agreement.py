@@ -140,25 +140,29 @@ def table(args):
     print(f"coverage averaged over the flight, full less campaign: {100 * mean_shift:+.2f} points")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def arguments(doc, seeds):
+    """Those of a script that flies campaigns in a folder, and makes a table of them."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=["fly", "table"])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--karst", default="karst", help="the program; a copy that no build replaces")
     parser.add_argument("--caves", nargs="+", default=[])
-    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--seeds", type=int, default=seeds)
     parser.add_argument("--battery", default="3 min")
     parser.add_argument("--jobs", type=int, default=2, help="trials at once; the same for the table")
     parser.add_argument("--policies", nargs="+", default=campaign.POLICIES)
+    return parser
+
+
+def main(parser, fly, table):
     args = parser.parse_args()
-    if args.what == "fly":
-        if not args.caves:
-            parser.error("fly needs --caves")
-        args.folder.mkdir(parents=True, exist_ok=True)
-        fly(args)
-    else:
-        table(args)
+    if args.what == "table":
+        return table(args)
+    if not args.caves:
+        parser.error("fly needs --caves")
+    args.folder.mkdir(parents=True, exist_ok=True)
+    fly(args)
 
 
 if __name__ == "__main__":
-    main()
+    main(arguments(__doc__, seeds=2), fly, table)

@@ -7,7 +7,6 @@
 Every policy flies through every cave with every seed with both kinds of trajectory, in the profile `campaign`. All
 flights of a seed come before those of the next one, so that it can stop early. A difference counts once a cave.
 """
-import argparse
 import math
 import random
 import statistics
@@ -78,39 +77,16 @@ def table(args):
         print(f"{metric:22}{mean['sampled']:9.3f}{mean['horizon']:9.3f}   {mean['horizon'] / mean['sampled']:.3f} "
               f"({ratios[50]:.3f} to {ratios[1949]:.3f}), {sum(d > 0 for d in differences)} of {len(differences)}, "
               f"p {sign_test(differences):.3f}")
-    print(f"\n{'policy':22}{'sampled':>9}{'horizon':>9}   mean coverage_auc")
-    for policy in policies:
-        keys = [k for k in both if k[0] == policy]
-        s, h = (statistics.fmean(values(kind, "coverage_auc", keys)) for kind in KINDS)
-        print(f"{policy:22}{s:9.3f}{h:9.3f}   {h / s:.3f}")
-    print(f"\n{'cave':22}{'sampled':>9}{'horizon':>9}   mean coverage_auc")
-    for cave in caves:
-        keys = [k for k in both if k[1] == cave]
-        s, h = (statistics.fmean(values(kind, "coverage_auc", keys)) for kind in KINDS)
-        print(f"{cave:22}{s:9.3f}{h:9.3f}   {h / s:.3f}")
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=["fly", "table"])
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--karst", default="karst", help="the program; a copy that no build replaces")
-    parser.add_argument("--caves", nargs="+", default=[])
-    parser.add_argument("--seeds", type=int, default=1)
-    parser.add_argument("--battery", default="3 min")
-    parser.add_argument("--vehicle", default="lidar_uav")
-    parser.add_argument("--gust", default="0.5 m/s")
-    parser.add_argument("--jobs", type=int, default=2, help="trials at once")
-    parser.add_argument("--policies", nargs="+", default=campaign.POLICIES)
-    args = parser.parse_args()
-    if args.what == "fly":
-        if not args.caves:
-            parser.error("fly needs --caves")
-        args.folder.mkdir(parents=True, exist_ok=True)
-        fly(args)
-    else:
-        table(args)
+    for which, name, values_of in ((0, "policy", policies), (1, "cave", caves)):
+        print(f"\n{name:22}{'sampled':>9}{'horizon':>9}   mean coverage_auc")
+        for value in values_of:
+            keys = [k for k in both if k[which] == value]
+            s, h = (statistics.fmean(values(kind, "coverage_auc", keys)) for kind in KINDS)
+            print(f"{value:22}{s:9.3f}{h:9.3f}   {h / s:.3f}")
 
 
 if __name__ == "__main__":
-    main()
+    parser = profile_agreement.arguments(__doc__, seeds=1)
+    parser.add_argument("--vehicle", default="lidar_uav")
+    parser.add_argument("--gust", default="0.5 m/s")
+    profile_agreement.main(parser, fly, table)
