@@ -4,6 +4,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core_stack/mission/flight/trusted_speeds.h"
+
 namespace karst::core {
 namespace {
 
@@ -11,8 +13,6 @@ constexpr double kControlPeriod_s = 0.01;
 constexpr double kOffGround_m = 0.15, kGravity_mps2 = 9.81;
 constexpr TimeNs kImuMissed = 25 * kMillisecond;  // without a sample: then predicted samples replace the IMU
 
-/// Fraction of the acceleration limit used for braking distances; the rest is for tracking.
-constexpr double kBrakingFraction = 0.8;
 /// No later motion depends on a brake's timing, so it may use nearly the full acceleration.
 constexpr double kEmergencyFraction = 0.95;
 
@@ -45,6 +45,10 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
       mass_(vehicle.mass_kg),
       takes_reference_(vehicle.takes_reference),
       emergency_landing_(options.motion, options.mission.landing_speed_mps) {
+  if (by_trust(options.motion)) {
+    const double open_mps = open_space_speed_mps(options, sensed_ahead(options, vehicle), braking_mps2());
+    limits_.max_speed_mps = std::min(limits_.max_speed_mps, open_mps);
+  }
   emergency_.max_acceleration_mps2 = kEmergencyFraction * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
   ground_m_ = start.position.z();
@@ -95,7 +99,8 @@ void Flight::follow(const Course& c) {
 }
 
 void Flight::follow(const Course& course, Trajectory ready) {
-  slow_ = course.slow;  // the only copy that takes memory: if there is none, the old trajectory stays whole
+  SlowPlaces slow = course.slow;  // the only copy that takes memory: without it, all stays as it was
+  slow_ = std::move(slow);
   heading_ = course.heading;
   path_speed_mps_ = course.max_speed_mps;
   braking_ = false;
