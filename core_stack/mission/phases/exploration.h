@@ -47,6 +47,7 @@ class Exploration {
   void record_cycle(const CycleInput& input, const CycleResult& result);
   void watch_progress();
   void reach_goal(TimeNs now);
+  double append_before_s() const;
   /// Whether `explored`, the answer to a vehicle at rest, is believed.
   bool is_over(const CycleResult& result) const;
 
