@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core_stack/common/error.h"
+#include "core_stack/mission/flight/trusted_speeds.h"
 
 namespace karst::core {
 namespace {
@@ -574,6 +575,7 @@ void MissionControl::record() {
                                return_home_.distance_m()});
   if (const auto& m3 = sensors_.unsurveyed_m3()) onboard_.recorder.unsurveyed(now(), *m3);
   if (flown_path_.begun()) flown_path_.note(flight.reference().position);
+  if (by_trust(onboard_.options.motion)) note_speed_limit();
   const bool each_second = now() % kSecond == 0;
   if (team_) team_->sharing.report(team_->right_of_way.phase_to_report());
   if (team_ && !emergency_ && each_second) {
@@ -585,6 +587,13 @@ void MissionControl::record() {
   }
   if (each_second && !onboard_.recorder.flush() && phases_.explores())
     return_home_.begin("the run directory cannot be written any more (disk full?)");
+}
+
+void MissionControl::note_speed_limit() {
+  const Flight& flight = onboard_.flight;
+  const SpeedLimit limit = phases_.under_way() ? flight.speed_limit(now()) : SpeedLimit::none;
+  if (std::exchange(speed_limit_, limit) != limit)
+    onboard_.recorder.write(now(), event::SpeedLimit{limit, flight.reference().velocity_mps.norm()});
 }
 
 void MissionControl::on_ground(TimeNs stamp) {

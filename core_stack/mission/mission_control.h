@@ -131,6 +131,7 @@ class MissionControl final : public VehicleSink {
   MapQuestion map_question() const;
   void on_map(const MapNews& news);
   void record();
+  void note_speed_limit();
   void enter(Phase phase, const std::string& reason);
   void switch_off_motors(TimeNs stamp);
   void touch_down(TimeNs stamp);
@@ -156,6 +157,7 @@ class MissionControl final : public VehicleSink {
 
   SafetySupervisor safety_;
   SafetyVerdict verdict_;
+  SpeedLimit speed_limit_ = SpeedLimit::none;
   StepWatch control_watch_, supervision_watch_;
   Watch watch_;
   int overruns_ = 0;      // of the executive, as last recorded

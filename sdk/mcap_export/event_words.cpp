@@ -94,6 +94,7 @@ struct Words {
   Result operator()(const event::Safety& e) const {
     return line<event::Safety>(severity_of(e.action), sentence(name_of(e.action), {e.reason}));
   }
+  Result operator()(const event::SpeedLimit&) const { return std::nullopt; }
   Result operator()(const event::Authority& e) const {
     return line<event::Authority>(Severity::warn,
                                   sentence(std::string(name_of(e.who)) + " steers", {e.reason}));

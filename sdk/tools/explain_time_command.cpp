@@ -9,6 +9,7 @@
 
 #include "core_stack/common/error.h"
 #include "sdk/evaluation/metrics/lost_time.h"
+#include "sdk/evaluation/metrics/speed_limit_times.h"
 #include "sdk/evaluation/team/team_folders.h"
 #include "sdk/terminal/terminal.h"
 #include "sdk/tools/help/value_types.h"
@@ -20,6 +21,7 @@ namespace fs = std::filesystem;
 using evaluation::LostTime;
 using evaluation::Slowdown;
 using evaluation::SlowdownCause;
+using evaluation::SpeedLimitTimes;
 
 struct Row {
   std::string name;
@@ -50,17 +52,29 @@ void print(const std::string& run, const LostTime& lost) {
               row.after_s);
 }
 
+/// Why it flew as fast as it did. Missions up to 2 m/s do not record it.
+void print(const SpeedLimitTimes& times) {
+  if (times.total_s() <= 0) return;
+  print_out("What set its speed, braking for it included:\n");
+  for (const auto& [limit, name] : names_of(core::SpeedLimit{}))
+    if (times[limit].time_s > 0)
+      print_out("  %-44s %7.1f s %6.2f m/s\n", evaluation::words_for(limit), times[limit].time_s,
+                times[limit].path_m / times[limit].time_s);
+}
+
 void explain(const std::vector<std::string>& runs, double until_s) {
   for (const std::string& run : runs) {
     std::vector<fs::path> folders{run};
     if (evaluation::is_team(run)) folders = evaluation::robot_folders(run);
     for (const fs::path& folder : folders) {
-      const auto lost = evaluation::lost_time(evaluation::read_run(folder), until_s);
+      const evaluation::RunRecord record = evaluation::read_run(folder);
+      const auto lost = evaluation::lost_time(record, until_s);
       if (!lost || lost->explored_s <= 0)
         throw core::InputError(
             folder.string(), "",
             "no telemetry of a flight that explored, or no limits of motion in mission.info");
       print(folder.string(), *lost);
+      print(evaluation::speed_limit_times(record, until_s));
     }
   }
 }

@@ -4,6 +4,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core_stack/mission/flight/trusted_speeds.h"
+
 namespace karst::core {
 namespace {
 
@@ -48,6 +50,10 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
       mass_(vehicle.mass_kg),
       takes_reference_(vehicle.takes_reference),
       emergency_landing_(options.motion, options.mission.landing_speed_mps) {
+  if (by_trust(options.motion)) {
+    const double open_mps = open_space_speed_mps(options, sensed_ahead(options, vehicle), braking_mps2());
+    limits_.max_speed_mps = std::min(limits_.max_speed_mps, open_mps);
+  }
   emergency_.max_acceleration_mps2 = kEmergencyFraction * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
   ground_m_ = start.position.z();
@@ -98,7 +104,8 @@ void Flight::follow(const Course& c) {
 }
 
 void Flight::follow(const Course& course, Trajectory ready) {
-  slow_ = course.slow;  // the only copy that takes memory: if there is none, the old trajectory stays whole
+  SlowPlaces slow = course.slow;  // the only copy that takes memory: without it, all stays as it was
+  slow_ = std::move(slow);
   heading_ = course.heading;
   path_speed_mps_ = course.max_speed_mps;
   braking_ = false;
@@ -278,8 +285,7 @@ Flight::CommittedSegment Flight::committed_segment(TimeNs t, double length_m) co
 /// The acceleration falls to that of braking at the greatest jerk: x = v T + a T^2 / 2 - j T^3 / 6 until
 /// then, or until the vehicle stands.
 Flight::CommittedSegment Flight::until_stop(TimeNs t) const {
-  const double v = velocity_at(t).norm(), braking = kBrakingFraction * limits_.max_acceleration_mps2,
-               jerk = limits_.max_jerk_mps3;
+  const double v = velocity_at(t).norm(), braking = braking_mps2(), jerk = limits_.max_jerk_mps3;
   if (v < 1e-3) return committed_segment(t, 0);
   const double a = std::clamp(departure_at(t).acceleration_mps2.dot(velocity_at(t)) / v, -braking,
                               limits_.max_acceleration_mps2);

@@ -32,7 +32,7 @@ MotionLimits slowed(MotionLimits limits, std::optional<double> max_speed_mps);
 /// The angle to turn when looking around: a full turn less the widest camera's view, with a little overlap.
 double turn_to_see_all_around(const VehicleDescription& vehicle);
 
-/// Fraction of the acceleration limit used for braking distances; the rest is for tracking.
+/// Fraction of a path's acceleration used for braking distances; the rest is for tracking.
 constexpr double kBrakingFraction = 0.8;
 
 class Flight {
@@ -113,6 +113,12 @@ class Flight {
   MotionState motion_at(TimeNs t) const;
   /// The trajectory from `t` to its end, every 100 ms.
   std::vector<TrajectorySample> samples_from(TimeNs t) const;
+  /// What sets the speed along the trajectory.
+  SpeedLimit speed_limit(TimeNs now) const {
+    return at_rest(now) || braking_ ? SpeedLimit::none : trajectory_.at(now).limited_by;
+  }
+  /// The deceleration of planned stops.
+  double braking_mps2() const { return kBrakingFraction * limits_.max_acceleration_mps2; }
   /// Time at which the trajectory is nearest to `p`.
   TimeNs time_nearest(const Vec3& p) const;
   double remaining_s(TimeNs now) const { return seconds(std::max<TimeNs>(0, trajectory_.end() - now)); }

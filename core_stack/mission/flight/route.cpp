@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core_stack/mission/flight/trusted_speeds.h"
 #include "core_stack/planning/search/grid_planner.h"
 #include "core_stack/planning/trajectory/join.h"
 
@@ -49,10 +50,14 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
               options.safety.slow_fraction * options.motion.max_speed_mps};
   for (const Vec3& place : start.narrow_places)
     if (near_line(committed.points, place)) out.slow.places.push_back(place);
+  out.slow.trusted = trusted_speeds(map, options, vehicle, out.points,
+                                    kBrakingFraction * start.limits.max_acceleration_mps2);
   if (options.motion.trajectory == TrajectoryKind::polynomial && path.found() && path.escape_points == 0 &&
       out.slow.places.empty()) {
     MotionLimits limits = start.limits;
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
+    for (const auto* speeds_mps : {&out.slow.trusted.sight_mps, &out.slow.trusted.room_mps})
+      for (const double mps : *speeds_mps) limits.max_speed_mps = std::min(limits.max_speed_mps, mps);
     out.polynomial =
         polynomial_trajectory(out.points, committed.departure, start.at, limits, out.heading, clear);
   }

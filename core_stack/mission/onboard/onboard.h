@@ -8,9 +8,6 @@
 
 namespace karst::core {
 
-/// The latency from a scan's arrival to its integration into the map.
-constexpr TimeNs kMappingBudget = 60 * kMillisecond;
-
 struct Onboard {
   Onboard(const CoreOptions& o, const VehicleDescription& description, Executive& e, Recorder& r,
           PolicyPort& policy)

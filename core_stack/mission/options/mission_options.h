@@ -20,6 +20,9 @@
 
 namespace karst::core {
 
+/// The latency from a scan's arrival to its integration into the map.
+constexpr TimeNs kMappingBudget = 60 * kMillisecond;
+
 struct MissionOptions {
   double takeoff_height_m = 0.7;
   double launch_clear_radius_m = 1.0;

@@ -93,13 +93,22 @@ void Exploration::choose() {
   if (steers()) {
     // Plans end short of the goal: nothing can be appended, and the next goal is wanted in flight.
     if (!goals.goal() || now - last_cycle_ > rarely * kSteeredPeriod) begin_cycle(Joins::at_stop);
-  } else if (flight.remaining_s(now) < o.append_before_s) {
+  } else if (flight.remaining_s(now) < append_before_s()) {
     // An appended path's speed limit applies from here on: do not append while the current path has one.
     if (o.append && !append_tried_ && !path.speed_limited()) begin_cycle(Joins::at_end);
     append_tried_ = true;
   } else if (now - last_cycle_ > rarely * from_seconds(o.decision_period_s)) {
     begin_cycle(Joins::at_stop);
   }
+}
+
+/// For a fast vehicle, before it brakes for the end of its path.
+double Exploration::append_before_s() const {
+  const MissionOptions& o = onboard_.options.mission;
+  if (!by_trust(onboard_.options.motion)) return o.append_before_s;
+  const MotionLimits limits = onboard_.flight.limits();
+  return std::max(o.append_before_s, limits.max_speed_mps / limits.max_acceleration_mps2 +
+                                         o.decision_budget_s + seconds(kPause));
 }
 
 void Exploration::reach_goal(TimeNs now) {

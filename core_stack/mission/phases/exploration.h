@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core_stack/mission/flight/trusted_speeds.h"
 #include "core_stack/mission/phases/endurance.h"
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
@@ -37,7 +38,7 @@ class Exploration {
  private:
   enum class Joins { at_stop, at_end };  // where the vehicle can stop, or at the end of the current path
   /// Whether motion is replanned with a receding horizon (Steering).
-  bool steers() const { return onboard_.options.motion.trajectory == TrajectoryKind::horizon; }
+  bool steers() const { return replans_motion(onboard_.options.motion); }
   void pass_goal();
   void choose();
   void begin_cycle(Joins joins);
@@ -47,6 +48,7 @@ class Exploration {
   void record_cycle(const CycleInput& input, const CycleResult& result);
   void watch_progress();
   void reach_goal(TimeNs now);
+  double append_before_s() const;
   /// Whether `explored`, the answer to a vehicle at rest, is believed.
   bool is_over(const CycleResult& result) const;
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core_stack/mission/flight/trusted_speeds.h"
+
 namespace karst::core {
 namespace {
 
@@ -26,7 +28,7 @@ Legs moved_on(const Legs& legs, TimeNs since) {
 
 bool Steering::applies() const {
   const PathExecution& path = parts_.path;
-  return onboard_.options.motion.trajectory == TrajectoryKind::horizon && parts_.phases.in(Phase::explore) &&
+  return replans_motion(onboard_.options.motion) && parts_.phases.in(Phase::explore) &&
          parts_.goals.goal() && !path.blocked() && !path.held() && !path.yields() && !path.detour_due() &&
          path.narrow_places().empty();
 }

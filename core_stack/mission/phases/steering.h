@@ -1,4 +1,4 @@
-// Steering: while the vehicle explores, it plans the next three seconds three times a second, and looks at
+// Steering: while the vehicle explores, it plans the next three seconds five times a second, and looks at
 // what is unknown on its way to the goal.
 #pragma once
 #include <optional>

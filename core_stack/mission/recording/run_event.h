@@ -24,6 +24,7 @@
 #include "core_stack/mission/state/phase.h"
 #include "core_stack/mission/state/safety_action.h"
 #include "core_stack/objects/object_state.h"
+#include "core_stack/planning/trajectory/speed_by_trust.h"
 #include "core_stack/planning/trajectory/trajectory_kind.h"
 #include "core_stack/vehicle/authority.h"
 #include "core_stack/vehicle/mission_outcome.h"
@@ -201,6 +202,16 @@ struct Safety {
   }
 };
 
+/// From then on, and only where motion.max_speed is above what is flown whatever the sensors see.
+struct SpeedLimit {
+  static constexpr const char* kKind = "speed_limit";
+  core::SpeedLimit by{};
+  double speed_mps = kUnknown;  // of the reference
+  static constexpr auto fields() {
+    return std::make_tuple(Field{"by", &SpeedLimit::by}, Field{"speed", &SpeedLimit::speed_mps});
+  }
+};
+
 struct Authority {
   static constexpr const char* kKind = "authority";
   core::Authority who{};
@@ -346,8 +357,8 @@ struct Outcome {
 };
 
 using Event = std::variant<Phase, Selection, Decision, Frontiers, Frontier, Drawing, Goal, Plan, Object, Log,
-                           Homing, Safety, Authority, Overrun, Degraded, Localization, Landing, Drop, Team,
-                           EarlierMap, Outcome>;
+                           Homing, Safety, SpeedLimit, Authority, Overrun, Degraded, Localization, Landing,
+                           Drop, Team, EarlierMap, Outcome>;
 
 /// The line without its end: {"t": ..., "kind": ..., and the fields by name}.
 std::string line_of(TimeNs t, const Event& event);

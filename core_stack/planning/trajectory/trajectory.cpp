@@ -68,26 +68,40 @@ void slow_down_in_time(std::vector<double>& v, const std::vector<double>& turn, 
                                  2 * left_along_mps2(v[i + 1], turn[i + 1], spacing_m, limits) * spacing_m));
 }
 
+struct Speeds {
+  std::vector<double> mps;
+  std::vector<SpeedLimit> limited_by;
+};
+
 /// Speed at each node: limited in bends, and by the acceleration between nodes. `headings` limit it further
 /// where they turn with the path.
-std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, double start_speed_mps,
-                           const MotionLimits& limits, const std::vector<double>& headings,
-                           const SlowPlaces& slow) {
+Speeds speeds(const std::vector<Vec3>& nodes, double spacing_m, double start_speed_mps,
+              const MotionLimits& limits, const std::vector<double>& headings, const SlowPlaces& slow) {
   const double a_max = limits.max_acceleration_mps2;
   const std::vector<double> turn = turns(nodes);
-  std::vector<double> v(nodes.size(), limits.max_speed_mps);
+  Speeds out{std::vector<double>(nodes.size(), limits.max_speed_mps),
+             std::vector<SpeedLimit>(nodes.size(), SpeedLimit::allowed)};
+  std::vector<double>& v = out.mps;
+  const auto lower = [&](std::size_t i, double speed_mps, SpeedLimit why) {
+    if (speed_mps >= v[i]) return;
+    v[i] = speed_mps;
+    out.limited_by[i] = why;
+  };
   for (std::size_t i = 0; i < v.size(); ++i) {
-    v[i] = bend_speed_mps(turn[i], spacing_m, limits);
+    lower(i, bend_speed_mps(turn[i], spacing_m, limits), SpeedLimit::bend);
     if (i + 1 < v.size()) {
       const double heading_turn = std::abs(wrap_angle(headings[i + 1] - headings[i]));
       if (heading_turn > 1e-9)
-        v[i] = std::min(v[i], limits.max_heading_rate_radps * spacing_m / heading_turn);
+        lower(i, limits.max_heading_rate_radps * spacing_m / heading_turn, SpeedLimit::heading);
     }
     const auto is_near = [&](const Vec3& p) {
       return (p - nodes[i]).squaredNorm() < slow.radius_m * slow.radius_m;
     };
     if (v[i] > slow.speed_mps && std::any_of(slow.places.begin(), slow.places.end(), is_near))
-      v[i] = slow.speed_mps;
+      lower(i, slow.speed_mps, SpeedLimit::narrow);
+    const double to_end_m = spacing_m * static_cast<double>(v.size() - 1 - i);
+    lower(i, slow.trusted.sight_at_mps(to_end_m), SpeedLimit::sight);
+    lower(i, slow.trusted.room_at_mps(to_end_m), SpeedLimit::room);
     v[i] = std::max(v[i], std::min(limits.min_speed_mps, limits.max_speed_mps));
   }
   // A vehicle that arrives too fast for a bend brakes at the limit; the speed never jumps.
@@ -96,11 +110,13 @@ std::vector<double> speeds(const std::vector<Vec3>& nodes, double spacing_m, dou
     v[i] = std::max(v[i], std::sqrt(std::max(0.0, v0 * v0 - 2 * a_max * spacing_m * static_cast<double>(i))));
   v.front() = v0;
   v.back() = 0;
+  out.limited_by.back() = SpeedLimit::end;
   for (std::size_t i = v.size() - 1; i-- > 0;)
-    v[i] = std::min(v[i], std::sqrt(v[i + 1] * v[i + 1] + 2 * a_max * spacing_m));
+    lower(i, std::sqrt(v[i + 1] * v[i + 1] + 2 * a_max * spacing_m), out.limited_by[i + 1]);
   for (std::size_t i = 1; i < v.size(); ++i)
-    v[i] = std::min(v[i], std::sqrt(v[i - 1] * v[i - 1] + 2 * a_max * spacing_m));
-  return v;
+    lower(i, std::sqrt(v[i - 1] * v[i - 1] + 2 * a_max * spacing_m), SpeedLimit::speeding_up);
+  if (v.size() > 1) out.limited_by.front() = out.limited_by[1];
+  return out;
 }
 
 /// Point at node coordinate `u`: the quadratic B-spline of the nodes, which begins and ends at the end nodes
@@ -158,7 +174,7 @@ TrajectorySample Trajectory::at(TimeNs t) const {
   const double part = static_cast<double>((t - start) % period) / static_cast<double>(period);
   const TrajectorySample &a = samples[i], &b = samples[std::min(i + 1, samples.size() - 1)];
   return {a.position + (b.position - a.position) * part,
-          wrap_angle(a.heading_rad + wrap_angle(b.heading_rad - a.heading_rad) * part)};
+          wrap_angle(a.heading_rad + wrap_angle(b.heading_rad - a.heading_rad) * part), b.limited_by};
 }
 
 double greatest_start_speed_mps(const std::vector<Vec3>& points, const MotionLimits& limits) {
@@ -193,7 +209,8 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
       turn_on_the_spot(course, wanted.front(), out.samples);
       start_speed_mps = 0;
     }
-    const std::vector<double> v = speeds(nodes, spacing, start_speed_mps, limits, wanted, slow);
+    const Speeds timed = speeds(nodes, spacing, start_speed_mps, limits, wanted, slow);
+    const std::vector<double>& v = timed.mps;
     const std::vector<double> t = times(v, spacing);
     // Too slow to arrive: fly as far as possible, to rest there. Each pass has fewer nodes, so this ends.
     if (!(t.back() <= kLongest_s))
@@ -210,7 +227,9 @@ Trajectory sample_trajectory(const std::vector<Vec3>& points, double start_speed
       const double u = static_cast<double>(i) + (v[i] * since + 0.5 * a * since * since) / spacing;
       while (ahead + 1 < t.size() && t[ahead] < now + delay_s) ++ahead;
       const double look = now >= turn_from ? *heading.goal_heading_rad : wanted[ahead];
-      out.samples.push_back({k == steps ? points.back() : point_at(nodes, u), course.step(look)});
+      // Between two nodes the slower one tells why.
+      out.samples.push_back({k == steps ? points.back() : point_at(nodes, u), course.step(look),
+                             timed.limited_by[v[i + 1] < v[i] ? i + 1 : i]});
     }
   }
   if (heading.goal_heading_rad) end_facing(course, *heading.goal_heading_rad, out.samples);

@@ -8,6 +8,7 @@
 #include "core_stack/common/geometry.h"
 #include "core_stack/common/options.h"
 #include "core_stack/common/time.h"
+#include "core_stack/planning/trajectory/speed_by_trust.h"
 #include "core_stack/planning/trajectory/trajectory_kind.h"
 
 namespace karst::core {
@@ -24,16 +25,18 @@ struct MotionLimits {
 };
 void describe(OptionTable& t, MotionLimits& o);
 
-/// Places near which flight is slower, within `radius_m`.
+/// Places near which flight is slower, within `radius_m`; and what else limits the speed by place.
 struct SlowPlaces {
   std::vector<Vec3> places;
   double radius_m = 1.0;
   double speed_mps = 1.0;
+  TrustedSpeeds trusted = {};  // along the path
 };
 
 struct TrajectorySample {
   Vec3 position = Vec3::Zero();
   double heading_rad = 0;
+  SpeedLimit limited_by = SpeedLimit::none;
 };
 
 /// Samples at `period` from `start`, clamped to the first sample before and the last one after.
