@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -79,6 +80,27 @@ TEST(RecedingHorizon, ExploresByCameraAndKeepsItsClearance) {
     EXPECT_GT(m["min_clearance_m"].get<double>(), 0.2);
     EXPECT_GT(m["explored_volume_m3"].get<double>(), 200);
   }
+}
+
+TEST(RecedingHorizon, ExploresByLidarFasterThanSampledTrajectories) {
+  const auto folder = fresh_folder("flight_horizon_lidar");
+  std::map<std::string, double> speed_mps;
+  for (const std::string trajectory : {"horizon", "sampled"}) {
+    SCOPED_TRACE(trajectory);
+    const auto run = folder / trajectory;
+    const Output out = run_karst(
+        "fly --cave " + generated_cave("small", 7) +
+        " --policy deep_cave --set mission.max_flight_time=70s --set motion.trajectory=" + trajectory +
+        " --quiet --no-report --out " + run.string());
+    EXPECT_EQ(out.code, 0) << out.text;
+    const nlohmann::json m = metrics_of(run);
+    ASSERT_TRUE(m.is_object());
+    EXPECT_EQ(m["outcome"], "landed");
+    EXPECT_EQ(m["contacts"], 0);
+    EXPECT_GT(m["min_clearance_m"].get<double>(), 0.15);
+    speed_mps[trajectory] = m["exploring_speed_mps"];
+  }
+  EXPECT_GT(speed_mps["horizon"], speed_mps["sampled"]);
 }
 
 /// What is there to compare with flies as safely, if not as well.

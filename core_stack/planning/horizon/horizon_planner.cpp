@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "core_stack/common/random.h"
 
@@ -17,6 +18,7 @@ constexpr double kNarrower = 0.5;                          // a round
 constexpr double kBetter_s = 0.1;                          // than what is under way, to be worth a change
 constexpr double kFlies_mps = 0.2;                         // or else it has no direction
 constexpr double kNear_m = 1.0;                            // of the goal it turns to its heading at last
+constexpr double kRounding = 1e-6;                         // of a cell
 constexpr double kLevel_m = 1.0;                           // may be climbed whatever the sensors see
 
 struct Candidate {
@@ -152,12 +154,35 @@ class Search {
     });
   }
 
-  bool clear(const std::vector<TrajectorySample>& samples) const {
-    for (std::size_t i = 0; i + 1 < samples.size(); i += 2) {
-      const Vec3& to = samples[std::min(i + 2, samples.size() - 1)].position;
-      if (!roadmap_.segment_clear(samples[i].position, to, q_.clearance_m)) return false;
+  /// What lies nearer to a sample than the room around it needs no look of its own.
+  bool clear(const std::vector<TrajectorySample>& samples) {
+    for (std::size_t i = 0; i + 1 < samples.size();) {
+      double room_m = this->room_m(samples[i].position);
+      std::size_t next = i;
+      while (next + 1 < samples.size()) {
+        room_m -= (samples[next + 1].position - samples[next].position).norm();
+        if (room_m < 0) break;
+        ++next;
+      }
+      if (next == i) {
+        next = std::min(i + 2, samples.size() - 1);
+        if (!roadmap_.segment_clear(samples[i].position, samples[next].position, q_.clearance_m))
+          return false;
+      }
+      i = next;
     }
     return true;
+  }
+
+  /// Within this distance from p all is clear: by the nearest obstacle to the middle of its cell, which
+  /// candidates share.
+  double room_m(const Vec3& p) {
+    const double cell_m = map_.resolution_m();
+    const CellKey k = map_.key_of(p);
+    const Vec3 middle = map_.center_of(k);
+    const auto [at, is_new] = room_around_m_.try_emplace(k);
+    if (is_new) at->second = roadmap_.clearance_m(middle) - q_.clearance_m;
+    return at->second - (p - middle).norm() - kRounding * cell_m;
   }
 
   std::optional<double> length_to_goal_m(const Vec3& from) const {
@@ -193,7 +218,7 @@ class Search {
                                             samples.size() - 1);
       poses[static_cast<std::size_t>(i)] = {samples[at].position, samples[at].heading_rad};
     }
-    return local_->gain_m3(rays_, poses);
+    return local_->gain_m3(poses);
   }
 
   double value_under_way() {
@@ -216,6 +241,7 @@ class Search {
   const std::vector<ViewRay>& rays_;
   const HorizonQuery& q_;
   std::optional<ViewMap> local_;  // if what is seen is worth anything
+  std::unordered_map<CellKey, double, CellKeyHash> room_around_m_;
   Random random_;
 };
 

@@ -44,7 +44,8 @@ std::vector<ViewRay> view_rays(const VehicleDescription& vehicle) {
   return rays;
 }
 
-ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double reach_m, std::span<const ViewRay> rays) {
+ViewMap::ViewMap(const VoxelMap& map, const Vec3& center, double reach_m, std::span<const ViewRay> rays)
+    : rays_(rays) {
   double longest_m = 0;
   for (const ViewRay& r : rays) longest_m = std::max(longest_m, r.range_m);
   const int shift = longest_m > kManyCells * map.resolution_m() ? 1 : 0;  // halves cells' coordinates
@@ -98,45 +99,68 @@ std::size_t ViewMap::index_of(const CellKey& k) const {
          static_cast<std::size_t>(k.x - low_.x);
 }
 
-double ViewMap::gain_m3(std::span<const ViewRay> rays, std::span<const ViewPose> poses) {
-  const double step_m = resolution_m_, per_cell = 1 / resolution_m_;
-  const double share_a_step = std::exp(-step_m / kExpected_m), half_a_step = std::sqrt(share_a_step);
-  const Vec3 low(low_.x, low_.y, low_.z);
+bool ViewMap::holds(const CellKey& k) const {
+  const CellKey at{k.x - low_.x, k.y - low_.y, k.z - low_.z};
+  return at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < edge_ && at.y < edge_ && at.z < edge_;
+}
+
+double ViewMap::gain_m3(std::span<const ViewPose> poses) {
   const std::uint32_t before_first = last_pose_;
-  double gain = 0;
+  double gain_m3 = 0;
   for (const ViewPose& pose : poses) {
     ++last_pose_;
-    const double c = std::cos(pose.heading_rad), s = std::sin(pose.heading_rad);
-    const Vec3 from = pose.position * per_cell - low;
-    for (const ViewRay& ray : rays) {
-      const Vec3& d = ray.direction;
-      const Vec3 step(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());  // one cell's edge
-      const int steps = static_cast<int>(ray.range_m * per_cell);
-      double share = half_a_step;
-      Vec3 p = from - 0.5 * step;
-      for (int i = 1; i <= steps; ++i) {  // at the middle of each step
-        p += step;
-        const auto x = static_cast<std::int32_t>(std::floor(p.x())),
-                   y = static_cast<std::int32_t>(std::floor(p.y())),
-                   z = static_cast<std::int32_t>(std::floor(p.z()));
-        if (x < 0 || y < 0 || z < 0 || x >= edge_ || y >= edge_ || z >= edge_) break;
-        const auto e = static_cast<std::size_t>(edge_);
-        const std::size_t at =
-            (static_cast<std::size_t>(z) * e + static_cast<std::size_t>(y)) * e + static_cast<std::size_t>(x);
-        const Cell cell = cells_[at];
-        if (cell == Cell::occupied) break;
-        if (cell == Cell::free) continue;
-        std::uint32_t& seen_by = seen_by_[at];
-        if (seen_by <= before_first || seen_by == last_pose_) {
-          seen_by = last_pose_;
-          const double r = (i - 0.5) * step_m;
-          gain += share * r * r * ray.solid_angle_sr * step_m;
-        }
-        share *= share_a_step;
-      }
+    for (const Sight& sight : view_from(pose)) {
+      std::uint32_t& seen_by = seen_by_[sight.cell];
+      if (seen_by > before_first && seen_by != last_pose_) continue;
+      seen_by = last_pose_;
+      gain_m3 += sight.volume_m3;
     }
   }
-  return gain;
+  return gain_m3;
+}
+
+const std::vector<ViewMap::Sight>& ViewMap::view_from(const ViewPose& pose) {
+  static const std::vector<Sight> kNone;
+  const auto cell_of = [this](double m) { return static_cast<std::int32_t>(std::floor(m / resolution_m_)); };
+  const CellKey cell{cell_of(pose.position.x()), cell_of(pose.position.y()), cell_of(pose.position.z())};
+  if (!holds(cell)) return kNone;
+  constexpr int kHeadings = 60;  // 0.105 rad apart
+  constexpr double kApart_rad = 2 * std::numbers::pi / kHeadings;
+  const auto heading = (std::lround(pose.heading_rad / kApart_rad) % kHeadings + kHeadings) % kHeadings;
+  const auto [at, is_new] =
+      views_.try_emplace(index_of(cell) * kHeadings + static_cast<std::uint64_t>(heading));
+  if (is_new) at->second = look(cell, static_cast<double>(heading) * kApart_rad);
+  return at->second;
+}
+
+std::vector<ViewMap::Sight> ViewMap::look(const CellKey& cell, double heading_rad) const {
+  const double step_m = resolution_m_;
+  const double share_a_step = std::exp(-step_m / kExpected_m), half_a_step = std::sqrt(share_a_step);
+  const double c = std::cos(heading_rad), s = std::sin(heading_rad);
+  const Vec3 from = Vec3(cell.x - low_.x, cell.y - low_.y, cell.z - low_.z) + Vec3::Constant(0.5);
+  std::vector<Sight> out;
+  for (const ViewRay& ray : rays_) {
+    const Vec3& d = ray.direction;
+    const Vec3 step(c * d.x() - s * d.y(), s * d.x() + c * d.y(), d.z());  // one cell's edge
+    const int steps = static_cast<int>(ray.range_m / resolution_m_);
+    double share = half_a_step;
+    Vec3 p = from - 0.5 * step;
+    for (int i = 1; i <= steps; ++i) {  // at the middle of each step
+      p += step;
+      const auto x = static_cast<std::int32_t>(std::floor(p.x())),
+                 y = static_cast<std::int32_t>(std::floor(p.y())),
+                 z = static_cast<std::int32_t>(std::floor(p.z()));
+      if (x < 0 || y < 0 || z < 0 || x >= edge_ || y >= edge_ || z >= edge_) break;
+      const std::size_t at = index_of(low_ + CellKey{x, y, z});
+      if (cells_[at] == Cell::occupied) break;
+      if (cells_[at] == Cell::free) continue;
+      const double r = (i - 0.5) * step_m;
+      out.push_back(
+          {static_cast<std::uint32_t>(at), static_cast<float>(share * r * r * ray.solid_angle_sr * step_m)});
+      share *= share_a_step;
+    }
+  }
+  return out;
 }
 
 }  // namespace karst::core

@@ -135,12 +135,16 @@ bool Roadmap::segment_clear(const Vec3& a, const Vec3& b, double clearance_m) co
   return graph_->rule && graph_->free.segment_clear(a, b, clearance_m);
 }
 
+double Roadmap::clearance_m(const Vec3& p) const {
+  return graph_->rule ? graph_->free.nearest(p, kInf).distance_m : 0;
+}
+
 double Roadmap::least_clearance_m(std::span<const Vec3> points) const {
   if (!graph_->rule || points.empty()) return 0;
   const FreeTiles& free = graph_->free;
   double least_m = kInf;
   const auto look = [&](const Vec3& p) {
-    const double distance_m = free.nearest(p, kInf).distance_m;
+    const double distance_m = clearance_m(p);
     least_m = std::min(least_m, distance_m);
     return distance_m;
   };

@@ -59,6 +59,9 @@ class Roadmap {
   /// Whether the straight line runs through free cells and nowhere nearer than `clearance_m` to an obstacle's
   /// centre, as of the last update. Takes microseconds.
   bool segment_clear(const Vec3& a, const Vec3& b, double clearance_m) const;
+  /// Distance from p to the nearest centre of a cell that is not free, as of the last update: at most 15
+  /// cells, and 0 before the first update.
+  double clearance_m(const Vec3& p) const;
   /// Least distance from the polyline to the centre of any cell that is not free, as of the last update: to
   /// an eighth of a cell, and at most 15 cells. 0 without points, or before the first update.
   double least_clearance_m(std::span<const Vec3> points) const;
