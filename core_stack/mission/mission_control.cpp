@@ -547,7 +547,11 @@ void MissionControl::note_verdict(const SafetyVerdict& before) {
 void MissionControl::react(const SafetyVerdict& before) {
   const bool under_way = phases_.under_way();
   if (under_way) {
-    const double usual_mps = onboard_.options.motion.max_speed_mps * path_.speed_fraction();
+    // Above kTrusted_mps every scan counts.
+    const bool sees_less =
+        onboard_.load.sheds(Relief::half_the_scans) || onboard_.load.sheds(Relief::half_the_images);
+    const double allowed_mps = path_.allowed_speed_mps(),
+                 usual_mps = sees_less ? std::min(allowed_mps, kTrusted_mps) : allowed_mps;
     const auto unseen_mps = team_ ? team_->right_of_way.max_speed_mps() : std::nullopt;
     onboard_.flight.cap_speed(now(), std::min(usual_mps, unseen_mps.value_or(usual_mps)));
   }

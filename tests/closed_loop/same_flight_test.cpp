@@ -90,6 +90,11 @@ const Flight kFlights[] = {
        return alone(generated_cave("small", 7), "information_gain",
                     "--set simulator.vehicle=camera_uav --set motion.trajectory=horizon");
      }},
+    {"deep_cave_at_six_metres_a_second",
+     [](const fs::path&) {
+       return alone(generated_cave("small", 7), "deep_cave",
+                    "--set motion.max_speed=6m/s --set motion.max_acceleration=\"4 m/s^2\"");
+     }},
     {"viewpoint_tour_through_a_narrow_passage",
      [](const fs::path& folder) {
        return alone(corridor_cave(folder), "viewpoint_tour", "--set planning.narrow_margin=\"0.08 m\"");

@@ -4,8 +4,6 @@
 #include <numbers>
 #include <utility>
 
-#include "core_stack/mission/flight/trusted_speeds.h"
-
 namespace karst::core {
 namespace {
 
@@ -23,6 +21,8 @@ constexpr double kTurningFraction = 0.9;
 /// keeps a little below its limits.
 constexpr double kPlannedSpeedFraction = 0.98, kPlannedAccelerationFraction = 0.9;
 
+}  // namespace
+
 /// Trajectories stay below the tracker's limits. If they were sampled at the limits, the virtual vehicle
 /// could never catch up after a delay: it would fall ever further behind, and cut corners.
 MotionLimits with_room_to_catch_up(MotionLimits limits) {
@@ -31,8 +31,6 @@ MotionLimits with_room_to_catch_up(MotionLimits limits) {
   limits.min_speed_mps = std::min(limits.min_speed_mps, limits.max_speed_mps);
   return limits;
 }
-
-}  // namespace
 
 MotionLimits slowed(MotionLimits limits, std::optional<double> max_speed_mps) {
   if (max_speed_mps) limits.max_speed_mps = std::min(limits.max_speed_mps, *max_speed_mps);
@@ -50,10 +48,6 @@ Flight::Flight(const CoreOptions& options, const VehicleDescription& vehicle)
       mass_(vehicle.mass_kg),
       takes_reference_(vehicle.takes_reference),
       emergency_landing_(options.motion, options.mission.landing_speed_mps) {
-  if (by_trust(options.motion)) {
-    const double open_mps = open_space_speed_mps(options, sensed_ahead(options, vehicle), braking_mps2());
-    limits_.max_speed_mps = std::min(limits_.max_speed_mps, open_mps);
-  }
   emergency_.max_acceleration_mps2 = kEmergencyFraction * options.motion.max_acceleration_mps2;
   const Pose& start = vehicle.T_world_start;
   ground_m_ = start.position.z();

@@ -35,6 +35,9 @@ double turn_to_see_all_around(const VehicleDescription& vehicle);
 /// Fraction of a path's acceleration used for braking distances; the rest is for tracking.
 constexpr double kBrakingFraction = 0.8;
 
+/// The limits of paths: below the tracker's own, which catches up with the rest.
+MotionLimits with_room_to_catch_up(MotionLimits limits);
+
 class Flight {
  public:
   Flight(const CoreOptions& options, const VehicleDescription& vehicle);

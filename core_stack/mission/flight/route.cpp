@@ -46,18 +46,15 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
   out.start_speed_mps = committed.speed_mps;
   out.max_speed_mps = goal && goal->max_speed_mps > 0 ? goal->max_speed_mps : options.motion.max_speed_mps;
   // The committed segment may still lead through narrow places of the previous path.
-  out.slow = {path.narrow_places, kNarrowRadius_m,
-              options.safety.slow_fraction * options.motion.max_speed_mps};
+  out.slow = {path.narrow_places, kNarrowRadius_m, slow_speed_mps(options)};
   for (const Vec3& place : start.narrow_places)
     if (near_line(committed.points, place)) out.slow.places.push_back(place);
   out.slow.trusted = trusted_speeds(map, options, vehicle, out.points,
                                     kBrakingFraction * start.limits.max_acceleration_mps2);
-  if (options.motion.trajectory == TrajectoryKind::polynomial && path.found() && path.escape_points == 0 &&
-      out.slow.places.empty()) {
+  if (flown_trajectory(options.motion) == TrajectoryKind::polynomial && path.found() &&
+      path.escape_points == 0 && out.slow.places.empty()) {
     MotionLimits limits = start.limits;
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
-    for (const auto* speeds_mps : {&out.slow.trusted.sight_mps, &out.slow.trusted.room_mps})
-      for (const double mps : *speeds_mps) limits.max_speed_mps = std::min(limits.max_speed_mps, mps);
     out.polynomial =
         polynomial_trajectory(out.points, committed.departure, start.at, limits, out.heading, clear);
   }

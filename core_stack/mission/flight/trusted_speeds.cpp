@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "core_stack/mission/flight/flight.h"
 #include "core_stack/planning/free_space/free_tiles.h"
 #include "core_stack/planning/free_space/free_way.h"
 #include "core_stack/planning/path/path.h"
@@ -62,7 +64,8 @@ std::vector<Vec3> from_the_end(const std::vector<Vec3>& points, double spacing_m
 
 double SensedAhead::range_m() const {
   double most_m = 0;
-  for (const Band& b : bands) most_m = std::max(most_m, b.range_m);
+  for (const Band& b : bands)
+    if (b.low_rad <= 0 && b.high_rad >= 0) most_m = std::max(most_m, b.range_m);
   return most_m;
 }
 
@@ -71,13 +74,21 @@ SensedAhead sensed_ahead(const CoreOptions& options, const VehicleDescription& v
   TimeNs period = 0;
   if (const auto& lidar = vehicle.lidar; lidar && !lidar->elevation_rad.empty()) {
     const auto [low, high] = std::minmax_element(lidar->elevation_rad.begin(), lidar->elevation_rad.end());
-    out.bands.push_back({std::min<double>(lidar->max_range_m, options.mission.mapping_range_m), *low, *high});
+    // A tilted LiDAR sees these elevations in every direction. One that hangs sees the opposite ones.
+    const double up = pitch_rad(lidar->T_body_lidar.orientation * Vec3::UnitZ()),
+                 tilt = std::numbers::pi / 2 - std::abs(up);
+    const SensedAhead::Band band{std::min<double>(lidar->max_range_m, options.mission.mapping_range_m),
+                                 (up >= 0 ? *low : -*high) + tilt, (up >= 0 ? *high : -*low) - tilt};
+    if (band.low_rad <= band.high_rad) out.bands.push_back(band);
     period = lidar->period;
   }
+  // Only a vehicle without LiDAR turns to where it flies.
   for (const auto& camera : vehicle.cameras) {
-    const double axis = pitch_rad(camera->T_body_camera.orientation * Vec3::UnitX()),
-                 half = camera->vertical_fov_rad / 2;
-    out.bands.push_back({camera->max_range_m, axis - half, axis + half});
+    const Vec3 axis = camera->T_body_camera.orientation * Vec3::UnitX();
+    const bool looks_ahead = std::abs(std::atan2(axis.y(), axis.x())) < camera->horizontal_fov_rad / 2;
+    if (vehicle.lidar || !looks_ahead) continue;
+    const double pitch = pitch_rad(axis), half = camera->vertical_fov_rad / 2;
+    out.bands.push_back({camera->max_range_m, pitch - half, pitch + half});
     period = std::max(period, camera->period);
   }
   // In the worst case a beam has just passed by: the first hit is then in the next sweep but one.
@@ -86,6 +97,19 @@ SensedAhead sensed_ahead(const CoreOptions& options, const VehicleDescription& v
                    options.motion.max_acceleration_mps2 / (2 * options.motion.max_jerk_mps3);
   if (options.localization.source == PoseSource::lidar) out.reaction_s += kLocating_s;
   return out;
+}
+
+double slow_speed_mps(const CoreOptions& options) {
+  return options.safety.slow_fraction * std::min(options.motion.max_speed_mps, kTrusted_mps);
+}
+
+CoreOptions within_sight(CoreOptions options, const VehicleDescription& vehicle) {
+  MotionLimits& motion = options.motion;
+  if (!by_trust(motion)) return options;
+  const double braking_mps2 = kBrakingFraction * with_room_to_catch_up(motion).max_acceleration_mps2;
+  motion.max_speed_mps = std::min(
+      motion.max_speed_mps, open_space_speed_mps(options, sensed_ahead(options, vehicle), braking_mps2));
+  return options;
 }
 
 bool by_trust(const MotionLimits& motion) { return motion.max_speed_mps > kTrusted_mps; }

@@ -16,22 +16,29 @@ constexpr double kTrusted_mps = 2.0;
 /// What the sensors tell in time of rock that was not there before.
 struct SensedAhead {
   struct Band {
-    double range_m = 0, low_rad = 0, high_rad = 0;  // elevations, of a level vehicle
+    double range_m = 0, low_rad = 0, high_rad = 0;  // elevations, of a level vehicle that flies ahead
   };
   std::vector<Band> bands;
-  double reaction_s = 0;  // from when rock appears until the vehicle brakes, at most
-  double range_m() const;
+  double reaction_s = 0;   // from when rock appears until the vehicle brakes, at most
+  double range_m() const;  // straight ahead
 };
 SensedAhead sensed_ahead(const CoreOptions& options, const VehicleDescription& vehicle);
 
 /// Whether the rule applies: not to missions that allow no more than kTrusted_mps.
 bool by_trust(const MotionLimits& motion);
 
-/// Whether motion is replanned with a receding horizon while the vehicle explores. Plans do not keep the
-/// limits along paths, so where the rule applies, trajectories are sampled.
-inline bool replans_motion(const MotionLimits& motion) {
-  return motion.trajectory == TrajectoryKind::horizon && !by_trust(motion);
+/// The kind of trajectories that are flown. Polynomials and plans of the receding horizon do not keep limits
+/// that differ along a path: where the rule applies, trajectories are sampled.
+inline TrajectoryKind flown_trajectory(const MotionLimits& motion) {
+  return by_trust(motion) ? TrajectoryKind::sampled : motion.trajectory;
 }
+
+/// In narrow places, and where the safety supervisor asks for it.
+double slow_speed_mps(const CoreOptions& options);
+
+/// The options with no more than the speed that the sensors allow in open space: what this vehicle can reach
+/// is what its way home is planned with.
+CoreOptions within_sight(CoreOptions options, const VehicleDescription& vehicle);
 
 /// The greatest speed of all, where the sensors see the way as far as they reach.
 double open_space_speed_mps(const CoreOptions& options, const SensedAhead& sensed, double braking_mps2);

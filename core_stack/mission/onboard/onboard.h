@@ -2,6 +2,7 @@
 #pragma once
 #include "core_stack/common/lane_bound.h"
 #include "core_stack/mission/flight/flight.h"
+#include "core_stack/mission/flight/trusted_speeds.h"
 #include "core_stack/mission/onboard/explorer.h"
 #include "core_stack/mission/recording/recorder.h"
 #include "core_stack/mission/state/load_shedding.h"
@@ -11,12 +12,12 @@ namespace karst::core {
 struct Onboard {
   Onboard(const CoreOptions& o, const VehicleDescription& description, Executive& e, Recorder& r,
           PolicyPort& policy)
-      : options(o),
+      : options(within_sight(o, description)),
         vehicle(description),
         executive(e),
         recorder(r),
-        flight(o, description),
-        map(e, Lane::map, o, description, policy),
+        flight(options, description),
+        map(e, Lane::map, options, description, policy),
         load({.maps_scans = description.lidar != nullptr,
               .locates_scans = description.lidar && o.localization.source == PoseSource::lidar,
               .depth_images = !description.cameras.empty(),

@@ -106,9 +106,9 @@ void Exploration::choose() {
 double Exploration::append_before_s() const {
   const MissionOptions& o = onboard_.options.mission;
   if (!by_trust(onboard_.options.motion)) return o.append_before_s;
-  const MotionLimits limits = onboard_.flight.limits();
-  return std::max(o.append_before_s, limits.max_speed_mps / limits.max_acceleration_mps2 +
-                                         o.decision_budget_s + seconds(kPause));
+  const double braking_s =
+      onboard_.flight.reference().velocity_mps.norm() / onboard_.flight.limits().max_acceleration_mps2;
+  return std::max(o.append_before_s, braking_s + o.decision_budget_s + seconds(kPause));
 }
 
 void Exploration::reach_goal(TimeNs now) {

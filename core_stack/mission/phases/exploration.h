@@ -38,7 +38,7 @@ class Exploration {
  private:
   enum class Joins { at_stop, at_end };  // where the vehicle can stop, or at the end of the current path
   /// Whether motion is replanned with a receding horizon (Steering).
-  bool steers() const { return replans_motion(onboard_.options.motion); }
+  bool steers() const { return flown_trajectory(onboard_.options.motion) == TrajectoryKind::horizon; }
   void pass_goal();
   void choose();
   void begin_cycle(Joins joins);

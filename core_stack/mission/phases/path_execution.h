@@ -6,6 +6,7 @@
 
 #include "core_stack/mission/flight/route.h"
 #include "core_stack/mission/flight/safety.h"
+#include "core_stack/mission/flight/trusted_speeds.h"
 #include "core_stack/mission/onboard/onboard.h"
 #include "core_stack/mission/state/phase.h"
 
@@ -56,9 +57,9 @@ class PathExecution {
 
   /// What the safety supervisor has it do.
   void obey(SafetyAction action) { ordered_ = action; }
-  /// The share of the mission's speed that it allows.
-  double speed_fraction() const {
-    return ordered_ == SafetyAction::none ? 1.0 : options_.safety.slow_fraction;
+  /// The speed that it allows.
+  double allowed_speed_mps() const {
+    return ordered_ == SafetyAction::none ? options_.motion.max_speed_mps : slow_speed_mps(options_);
   }
   bool held() const { return ordered_ == SafetyAction::brake; }
   /// Whether another vehicle has the right of way.

@@ -28,9 +28,9 @@ Legs moved_on(const Legs& legs, TimeNs since) {
 
 bool Steering::applies() const {
   const PathExecution& path = parts_.path;
-  return replans_motion(onboard_.options.motion) && parts_.phases.in(Phase::explore) && parts_.goals.goal() &&
-         !path.blocked() && !path.held() && !path.yields() && !path.detour_due() &&
-         path.narrow_places().empty();
+  return flown_trajectory(onboard_.options.motion) == TrajectoryKind::horizon &&
+         parts_.phases.in(Phase::explore) && parts_.goals.goal() && !path.blocked() && !path.held() &&
+         !path.yields() && !path.detour_due() && path.narrow_places().empty();
 }
 
 void Steering::step() {

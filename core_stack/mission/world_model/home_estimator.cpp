@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core_stack/mission/flight/trusted_speeds.h"
+
 namespace karst::core {
 
 HomeEstimator::HomeEstimator(const CoreOptions& options, const VehicleDescription& vehicle, WorldModel& world,
@@ -11,7 +13,7 @@ HomeEstimator::HomeEstimator(const CoreOptions& options, const VehicleDescriptio
       home_margin_(options.mission.home_margin),
       home_reserve_s_(options.mission.home_reserve_s),
       landing_speed_mps_(options.mission.landing_speed_mps),
-      slow_speed_mps_(options.safety.slow_fraction * options.motion.max_speed_mps),
+      slow_speed_mps_(core::slow_speed_mps(options)),
       ground_z_m_(vehicle.T_world_start.position.z()),
       world_(&world),
       team_(&team) {}

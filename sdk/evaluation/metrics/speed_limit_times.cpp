@@ -1,5 +1,6 @@
 #include "sdk/evaluation/metrics/speed_limit_times.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -16,7 +17,8 @@ std::vector<std::pair<double, SpeedLimit>> changes(const RunRecord& run) {
   std::vector<std::pair<double, SpeedLimit>> out;
   for (const nlohmann::json& e : run.events)
     if (const auto limit = core::event::as<core::event::SpeedLimit>(e))
-      out.emplace_back(event_number(e, "t").value_or(0), limit->by);
+      if (const auto t_s = event_number(e, "t")) out.emplace_back(*t_s, limit->by);
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   return out;
 }
 

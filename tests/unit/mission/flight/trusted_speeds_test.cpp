@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace karst::core {
 namespace {
@@ -105,12 +106,83 @@ TEST(TrustedSpeeds, ACameraOfShortRangeLimitsOpenSpaceToo) {
   CoreOptions o = fast();
   VehicleDescription v;
   auto camera = std::make_shared<CameraModel>();
-  camera->vertical_fov_rad = 1;
+  camera->horizontal_fov_rad = camera->vertical_fov_rad = 1;
   v.cameras = {camera};
   const SensedAhead sensed = sensed_ahead(o, v);
   EXPECT_DOUBLE_EQ(open_space_speed_mps(o, sensed, kBraking_mps2),
                    stopping_speed_mps(4.5 - o.planning.clearance_m, sensed.reaction_s, kBraking_mps2));
   EXPECT_EQ(open_space_speed_mps(o, sensed, 0.3), kTrusted_mps);
+}
+
+// As they were: a camera that looks back, and any camera of a vehicle that does not turn to where it flies.
+TEST(TrustedSpeeds, OnlySensorsThatLookAheadCount) {
+  const CoreOptions o = fast();
+  const auto with_camera = [](const Quat& orientation) {
+    VehicleDescription v;
+    auto camera = std::make_shared<CameraModel>();
+    camera->horizontal_fov_rad = camera->vertical_fov_rad = 1;
+    camera->T_body_camera.orientation = orientation;
+    v.cameras = {camera};
+    return v;
+  };
+  const auto turned = [](double angle_rad, const Vec3& axis) {
+    return Quat(Eigen::AngleAxisd(angle_rad, axis));
+  };
+  EXPECT_GT(sensed_ahead(o, with_camera(Quat::Identity())).range_m(), 4);
+  EXPECT_EQ(sensed_ahead(o, with_camera(turned(std::numbers::pi, Vec3::UnitZ()))).range_m(), 0);
+  EXPECT_EQ(sensed_ahead(o, with_camera(turned(std::numbers::pi / 2, Vec3::UnitY()))).range_m(), 0)
+      << "it looks down";
+  VehicleDescription both = with_camera(Quat::Identity());
+  both.lidar = with_lidar().lidar;
+  EXPECT_EQ(sensed_ahead(o, both).bands.size(), 1u);
+}
+
+TEST(TrustedSpeeds, ATiltedLidarCountsForWhatItSeesAllAround) {
+  const CoreOptions o = fast();
+  const auto band_of = [&](double tilt_rad) {
+    LidarModel lidar = *with_lidar().lidar;
+    lidar.T_body_lidar.orientation = Quat(Eigen::AngleAxisd(tilt_rad, Vec3::UnitX()));
+    lidar.elevation_rad = {0.5f, -0.3f};
+    VehicleDescription v;
+    v.lidar = std::make_shared<LidarModel>(lidar);
+    const SensedAhead sensed = sensed_ahead(o, v);
+    return sensed.bands.empty() ? std::pair(1.0, -1.0)
+                                : std::pair(sensed.bands[0].low_rad, sensed.bands[0].high_rad);
+  };
+  EXPECT_NEAR(band_of(0.1).first, -0.2, 1e-6);
+  EXPECT_NEAR(band_of(0.1).second, 0.4, 1e-6);
+  EXPECT_NEAR(band_of(std::numbers::pi).first, -0.5, 1e-6) << "it hangs";
+  EXPECT_NEAR(band_of(std::numbers::pi).second, 0.3, 1e-6);
+  EXPECT_GT(band_of(std::numbers::pi / 2).first, band_of(std::numbers::pi / 2).second)
+      << "nothing is seen all around";
+}
+
+// As it was: half of 6 m/s in a passage of 1.1 m, 1 mm from rock.
+TEST(TrustedSpeeds, NarrowPlacesAreFlownNoFasterThanByAVehicleOfTwoMetresPerSecond) {
+  CoreOptions o = fast();
+  EXPECT_DOUBLE_EQ(slow_speed_mps(o), 0.5 * kTrusted_mps);
+  o.motion.max_speed_mps = 1;
+  EXPECT_DOUBLE_EQ(slow_speed_mps(o), 0.5);
+}
+
+TEST(TrustedSpeeds, TheMissionKnowsWhatTheVehicleCanReach) {
+  CoreOptions o = fast();
+  VehicleDescription blind;
+  EXPECT_EQ(within_sight(o, blind).motion.max_speed_mps, kTrusted_mps);
+  EXPECT_EQ(within_sight(o, with_lidar()).motion.max_speed_mps, 6);
+  o.motion.max_speed_mps = 1.5;
+  EXPECT_EQ(within_sight(o, blind).motion.max_speed_mps, 1.5);
+}
+
+TEST(TrustedSpeeds, WhereTheyApplyTrajectoriesAreSampled) {
+  CoreOptions o = fast();
+  for (const TrajectoryKind kind : {TrajectoryKind::horizon, TrajectoryKind::polynomial}) {
+    o.motion.trajectory = kind;
+    o.motion.max_speed_mps = 2;
+    EXPECT_EQ(flown_trajectory(o.motion), kind);
+    o.motion.max_speed_mps = 2.1;
+    EXPECT_EQ(flown_trajectory(o.motion), TrajectoryKind::sampled);
+  }
 }
 
 }  // namespace

@@ -92,6 +92,20 @@ TEST(Trajectory, ArrivingTooFastForABendItBrakesAllItCan) {
   }
 }
 
+// As it was: told to be slow, a vehicle of 5 m/s was to fly 2 m/s at once.
+TEST(Trajectory, FasterThanAllowedItBrakesAllItCan) {
+  MotionLimits limits;
+  const Trajectory t = sample_trajectory({{0, 0, 0}, {40, 0, 0}}, 5, 0, limits, {});
+  double before_mps = 5;
+  for (std::size_t i = 1; i < t.samples.size(); ++i) {
+    const double v = (t.samples[i].position - t.samples[i - 1].position).norm() / seconds(t.period);
+    EXPECT_GT(v, before_mps - 1.05 * limits.max_acceleration_mps2 * seconds(t.period) - 1e-3) << i;
+    before_mps = v;
+  }
+  EXPECT_GT((t.samples[4].position - t.samples[3].position).norm() / seconds(t.period),
+            limits.max_speed_mps + 1);
+}
+
 TEST(Trajectory, TheGreatestStartSpeedIsThatFromWhichBendAndEndCanBeMet) {
   const MotionLimits limits;
   EXPECT_NEAR(greatest_start_speed_mps({{0, 0, 0}, {0.5, 0, 0}}, limits), std::sqrt(2.0),
