@@ -104,9 +104,10 @@ Speeds speeds(const std::vector<Vec3>& nodes, double spacing_m, double start_spe
     lower(i, slow.trusted.room_at_mps(to_end_m), SpeedLimit::room);
     v[i] = std::max(v[i], std::min(limits.min_speed_mps, limits.max_speed_mps));
   }
-  // A vehicle that arrives too fast, for a bend or for what is allowed now, brakes at the limit; the speed
-  // never jumps.
-  const double v0 = std::max(0.0, start_speed_mps);
+  // A vehicle that arrives too fast for a bend brakes at the limit. So does a fast one for what is allowed
+  // now; up to 2 m/s, where no trusted speeds are set, the tracker takes that small step.
+  const double greatest_mps = slow.trusted.sight_mps.empty() ? limits.max_speed_mps : start_speed_mps;
+  const double v0 = std::clamp(start_speed_mps, 0.0, std::max(0.0, greatest_mps));
   for (std::size_t i = 0; i < v.size(); ++i)
     v[i] = std::max(v[i], std::sqrt(std::max(0.0, v0 * v0 - 2 * a_max * spacing_m * static_cast<double>(i))));
   v.front() = v0;
