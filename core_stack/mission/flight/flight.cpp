@@ -23,8 +23,6 @@ constexpr double kPlannedSpeedFraction = 0.98, kPlannedAccelerationFraction = 0.
 
 }  // namespace
 
-/// Trajectories stay below the tracker's limits. If they were sampled at the limits, the virtual vehicle
-/// could never catch up after a delay: it would fall ever further behind, and cut corners.
 MotionLimits with_room_to_catch_up(MotionLimits limits) {
   limits.max_speed_mps *= 0.93;
   limits.max_acceleration_mps2 *= 0.75;

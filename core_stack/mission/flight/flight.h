@@ -35,7 +35,8 @@ double turn_to_see_all_around(const VehicleDescription& vehicle);
 /// Fraction of a path's acceleration used for braking distances; the rest is for tracking.
 constexpr double kBrakingFraction = 0.8;
 
-/// The limits of paths: below the tracker's own, which catches up with the rest.
+/// The limits of paths, below the tracker's own. If trajectories were sampled at those, the virtual vehicle
+/// could never catch up after a delay: it would fall ever further behind, and cut corners.
 MotionLimits with_room_to_catch_up(MotionLimits limits);
 
 class Flight {

@@ -9,7 +9,7 @@
 namespace karst::core {
 namespace {
 
-/// The tracker's limit of speed leaves as much, see with_room_to_catch_up (flight.cpp).
+/// The tracker's limit of speed leaves as much, see with_room_to_catch_up.
 constexpr double kMayExceed = 0.05;
 
 bool near_line(const std::vector<Vec3>& line, const Vec3& place) {

@@ -3,7 +3,8 @@
 namespace karst::core {
 
 void describe(OptionTable& t, SafetyOptions& o) {
-  t.add("slow_fraction", o.slow_fraction, "", 0.1, 1, "share of motion.max_speed while slowed for safety");
+  t.add("slow_fraction", o.slow_fraction, "", 0.1, 1,
+        "share of motion.max_speed, or of 2 m/s if that is less, while slowed for safety");
   t.add("tracking_slow", o.tracking_slow_m, "m", 0.1, 10, "tracking error at which the vehicle slows down");
   t.add("tracking_brake", o.tracking_brake_m, "m", 0.1, 10, "tracking error at which it brakes to a hover");
   t.add("hull_clearance", o.hull_clearance_m, "m", 0, 1, "it slows down nearer to obstacles than this");

@@ -5,7 +5,7 @@
 namespace karst::core {
 
 struct SafetyOptions {
-  double slow_fraction = 0.5;    // of motion.max_speed, while slowed
+  double slow_fraction = 0.5;    // of motion.max_speed or 2 m/s, while slowed
   double tracking_slow_m = 0.4;  // distance of the estimate from the reference
   double tracking_brake_m = 0.8;
   double hull_clearance_m = 0.1;  // slow below this distance of the hull from obstacles

@@ -31,7 +31,7 @@ class Search {
  public:
   Search(const VoxelMap& map, const Roadmap& roadmap, const DistanceTree& to_goal,
          const std::vector<ViewRay>& rays, const HorizonQuery& q)
-      : map_(map), roadmap_(roadmap), to_goal_(to_goal), rays_(rays), q_(q), random_(q.seed) {
+      : map_(map), roadmap_(roadmap), to_goal_(to_goal), q_(q), random_(q.seed) {
     if (q.worth_s_per_m3 > 0)
       local_.emplace(map, q.start.position, kHorizon_s * q.limits.max_speed_mps, rays);
   }
@@ -238,7 +238,6 @@ class Search {
   const VoxelMap& map_;
   const Roadmap& roadmap_;
   const DistanceTree& to_goal_;
-  const std::vector<ViewRay>& rays_;
   const HorizonQuery& q_;
   std::optional<ViewMap> local_;  // if what is seen is worth anything
   std::unordered_map<CellKey, double, CellKeyHash> room_around_m_;

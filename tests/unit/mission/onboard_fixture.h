@@ -12,6 +12,7 @@
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
 #include "core_stack/mission/phases/path_execution.h"
+#include "tests/unit/mission/lidar_vehicle.h"
 #include "tests/unit/mission/scripted_policy.h"
 
 namespace karst::core {
@@ -28,14 +29,6 @@ class OnboardTest : public ::testing::Test {
                      (std::string("onboard_") + test->test_suite_name() + "_" + test->name());
     std::filesystem::remove_all(dir);
     return dir;
-  }
-  static VehicleDescription with_lidar() {
-    VehicleDescription v;
-    auto lidar = std::make_shared<LidarModel>();
-    lidar->columns = 8;
-    lidar->elevation_rad = {0.5f, -0.5f};
-    v.lidar = lidar;
-    return v;
   }
   static CoreOptions by_pose_sensor() {
     CoreOptions o;

@@ -240,7 +240,8 @@ class DrawnHost {
     }
     return least;
   }
-  /// As the host estimates it: cruises at 0.8 of the maximum, and speeds up and brakes at 2 m/s^2.
+  /// As the host estimates it up to 2 m/s: cruises at 0.8 of the maximum, and speeds up and brakes at 2
+  /// m/s^2.
   static double flight_time_s(double length_m, double speed_mps) {
     const double cruise = 0.8 * speed_mps, a = 2.0;
     return length_m >= cruise * cruise / a ? length_m / cruise + cruise / a : 2 * std::sqrt(length_m / a);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "tests/unit/mission/lidar_vehicle.h"
+
 namespace karst::core {
 namespace {
 
@@ -30,15 +32,6 @@ CoreOptions fast() {
   o.motion.max_speed_mps = 6;
   o.localization.source = PoseSource::pose_sensor;
   return o;
-}
-
-VehicleDescription with_lidar() {
-  VehicleDescription v;
-  auto lidar = std::make_shared<LidarModel>();
-  lidar->columns = 8;
-  lidar->elevation_rad = {0.5f, -0.5f};
-  v.lidar = lidar;
-  return v;
 }
 
 constexpr double kBraking_mps2 = 2;
