@@ -51,8 +51,8 @@ Route make_route(const VoxelMap& map, const CoreOptions& options, const VehicleD
     if (near_line(committed.points, place)) out.slow.places.push_back(place);
   out.slow.trusted = trusted_speeds(map, options, vehicle, out.points,
                                     kBrakingFraction * start.limits.max_acceleration_mps2);
-  if (flown_trajectory(options.motion) == TrajectoryKind::polynomial && path.found() &&
-      path.escape_points == 0 && out.slow.places.empty()) {
+  if (options.motion.trajectory == TrajectoryKind::polynomial && path.found() && path.escape_points == 0 &&
+      out.slow.places.empty()) {
     MotionLimits limits = start.limits;
     limits.max_speed_mps = std::min(limits.max_speed_mps, out.max_speed_mps);
     out.polynomial =

@@ -103,16 +103,25 @@ double slow_speed_mps(const CoreOptions& options) {
   return options.safety.slow_fraction * std::min(options.motion.max_speed_mps, kTrusted_mps);
 }
 
-CoreOptions within_sight(CoreOptions options, const VehicleDescription& vehicle) {
+CoreOptions as_flown(CoreOptions options, const VehicleDescription& vehicle) {
   MotionLimits& motion = options.motion;
-  if (!by_trust(motion)) return options;
-  const double braking_mps2 = kBrakingFraction * with_room_to_catch_up(motion).max_acceleration_mps2;
-  motion.max_speed_mps = std::min(
-      motion.max_speed_mps, open_space_speed_mps(options, sensed_ahead(options, vehicle), braking_mps2));
+  if (by_trust(motion)) {
+    const double braking_mps2 = kBrakingFraction * with_room_to_catch_up(motion).max_acceleration_mps2;
+    motion.max_speed_mps = std::min(
+        motion.max_speed_mps, open_space_speed_mps(options, sensed_ahead(options, vehicle), braking_mps2));
+  }
+  motion.trajectory = flown_trajectory(motion, vehicle);
   return options;
 }
 
 bool by_trust(const MotionLimits& motion) { return motion.max_speed_mps > kTrusted_mps; }
+
+/// A vehicle without a LiDAR sees where it looks: it gains most by planning its heading with its position.
+TrajectoryKind flown_trajectory(const MotionLimits& motion, const VehicleDescription& vehicle) {
+  if (by_trust(motion)) return TrajectoryKind::sampled;
+  if (motion.trajectory != TrajectoryKind::automatic) return motion.trajectory;
+  return vehicle.lidar ? TrajectoryKind::sampled : TrajectoryKind::horizon;
+}
 
 double open_space_speed_mps(const CoreOptions& options, const SensedAhead& sensed, double braking_mps2) {
   return std::max(kTrusted_mps, stopping_speed_mps(sensed.range_m() - options.planning.clearance_m,

@@ -12,7 +12,7 @@ namespace karst::core {
 struct Onboard {
   Onboard(const CoreOptions& o, const VehicleDescription& description, Executive& e, Recorder& r,
           PolicyPort& policy)
-      : options(within_sight(o, description)),
+      : options(as_flown(o, description)),
         vehicle(description),
         executive(e),
         recorder(r),

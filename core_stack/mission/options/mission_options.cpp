@@ -15,10 +15,13 @@ void describe(OptionTable& t, MissionOptions& o) {
   t.add("launch_clear_radius", o.launch_clear_radius_m, "m", 0.5, 5,
         "ball around the first hover which the operator vouches to be clear");
   t.add("decision_period", o.decision_period_s, "s", 0.5, 60,
-        "the policy is asked again after this long under way, and when a goal is near or has lost its sense");
+        "the policy is asked again after this long under way, and when a goal is near or has lost its sense; "
+        "after 1.5 s with a receding horizon (motion.trajectory)");
   t.add("decision_budget", o.decision_budget_s, "s", 0.05, 2, "simulated time a decision and its plan take");
   t.add("append", o.append,
-        "the next goal is chosen under way and its path appended; off: the vehicle stops at every goal");
+        "the next goal is chosen under way and its path appended, but with a receding horizon; off: the "
+        "vehicle "
+        "stops at every goal");
   t.add("append_before", o.append_before_s, "s", 0.5, 10,
         "the next goal is asked for this long before the present one is reached");
   t.add("goal_timeout", o.goal_timeout_s, "s", 2, 60, "a goal without progress for this long is abandoned");

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core_stack/mission/flight/trusted_speeds.h"
+
 namespace karst::core {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core_stack/mission/flight/trusted_speeds.h"
 #include "core_stack/mission/phases/endurance.h"
 #include "core_stack/mission/phases/flown_path.h"
 #include "core_stack/mission/phases/goal_tracker.h"
@@ -38,7 +37,7 @@ class Exploration {
  private:
   enum class Joins { at_stop, at_end };  // where the vehicle can stop, or at the end of the current path
   /// Whether motion is replanned with a receding horizon (Steering).
-  bool steers() const { return flown_trajectory(onboard_.options.motion) == TrajectoryKind::horizon; }
+  bool steers() const { return onboard_.options.motion.trajectory == TrajectoryKind::horizon; }
   void pass_goal();
   void choose();
   void begin_cycle(Joins joins);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core_stack/mission/flight/trusted_speeds.h"
-
 namespace karst::core {
 namespace {
 
@@ -28,9 +26,9 @@ Legs moved_on(const Legs& legs, TimeNs since) {
 
 bool Steering::applies() const {
   const PathExecution& path = parts_.path;
-  return flown_trajectory(onboard_.options.motion) == TrajectoryKind::horizon &&
-         parts_.phases.in(Phase::explore) && parts_.goals.goal() && !path.blocked() && !path.held() &&
-         !path.yields() && !path.detour_due() && path.narrow_places().empty();
+  return onboard_.options.motion.trajectory == TrajectoryKind::horizon && parts_.phases.in(Phase::explore) &&
+         parts_.goals.goal() && !path.blocked() && !path.held() && !path.yields() && !path.detour_due() &&
+         path.narrow_places().empty();
 }
 
 void Steering::step() {

@@ -161,10 +161,10 @@ TEST(TrustedSpeeds, NarrowPlacesAreFlownNoFasterThanByAVehicleOfTwoMetresPerSeco
 TEST(TrustedSpeeds, TheMissionKnowsWhatTheVehicleCanReach) {
   CoreOptions o = fast();
   VehicleDescription blind;
-  EXPECT_EQ(within_sight(o, blind).motion.max_speed_mps, kTrusted_mps);
-  EXPECT_EQ(within_sight(o, with_lidar()).motion.max_speed_mps, 6);
+  EXPECT_EQ(as_flown(o, blind).motion.max_speed_mps, kTrusted_mps);
+  EXPECT_EQ(as_flown(o, with_lidar()).motion.max_speed_mps, 6);
   o.motion.max_speed_mps = 1.5;
-  EXPECT_EQ(within_sight(o, blind).motion.max_speed_mps, 1.5);
+  EXPECT_EQ(as_flown(o, blind).motion.max_speed_mps, 1.5);
 }
 
 TEST(TrustedSpeeds, WhereTheyApplyTrajectoriesAreSampled) {
@@ -172,9 +172,21 @@ TEST(TrustedSpeeds, WhereTheyApplyTrajectoriesAreSampled) {
   for (const TrajectoryKind kind : {TrajectoryKind::horizon, TrajectoryKind::polynomial}) {
     o.motion.trajectory = kind;
     o.motion.max_speed_mps = 2;
-    EXPECT_EQ(flown_trajectory(o.motion), kind);
+    EXPECT_EQ(as_flown(o, with_lidar()).motion.trajectory, kind);
     o.motion.max_speed_mps = 2.1;
-    EXPECT_EQ(flown_trajectory(o.motion), TrajectoryKind::sampled);
+    EXPECT_EQ(as_flown(o, with_lidar()).motion.trajectory, TrajectoryKind::sampled);
+  }
+}
+
+TEST(TrustedSpeeds, AVehicleWithoutALidarPlansItsHeadingTooUnlessTheMissionSaysOtherwise) {
+  CoreOptions o;
+  const VehicleDescription without;
+  ASSERT_EQ(o.motion.trajectory, TrajectoryKind::automatic);
+  EXPECT_EQ(as_flown(o, with_lidar()).motion.trajectory, TrajectoryKind::sampled);
+  EXPECT_EQ(as_flown(o, without).motion.trajectory, TrajectoryKind::horizon);
+  for (const TrajectoryKind kind : {TrajectoryKind::sampled, TrajectoryKind::polynomial}) {
+    o.motion.trajectory = kind;
+    EXPECT_EQ(as_flown(o, without).motion.trajectory, kind);
   }
 }
 
