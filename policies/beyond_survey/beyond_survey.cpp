@@ -163,5 +163,5 @@ class BeyondSurvey : public karst::Policy {
 
 }  // namespace
 
-KARST_POLICY(BeyondSurvey, "beyond_survey", "1.0.0",
+KARST_POLICY(BeyondSurvey, "beyond_survey", "1.1.0",
              "Explores what a survey lacks, and flies through what it knows to where it ends.")

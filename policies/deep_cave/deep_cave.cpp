@@ -84,5 +84,5 @@ class DeepCave : public karst::Policy {
 
 }  // namespace
 
-KARST_POLICY(DeepCave, "deep_cave", "1.0.0",
+KARST_POLICY(DeepCave, "deep_cave", "1.1.0",
              "Goes as deep as the time left allows: the way home takes the other half of the battery.")

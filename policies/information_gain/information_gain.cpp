@@ -103,7 +103,7 @@ class InformationGain : public karst::Policy {
 
   karst::OpenFrontiers open_;
   karst::ExpectedGain gain_;
-  double max_volume_m3_ = 40.0;
+  double max_volume_m3_ = 200.0;
   double min_volume_m3_ = 0.3;
   double stop_s_ = 1.5;
   double turn_s_ = 3.0;
@@ -115,5 +115,5 @@ class InformationGain : public karst::Policy {
 
 }  // namespace
 
-KARST_POLICY(InformationGain, "information_gain", "1.1.0",
+KARST_POLICY(InformationGain, "information_gain", "1.2.0",
              "Flies to the frontier that shows the most unknown space for the time it takes.")

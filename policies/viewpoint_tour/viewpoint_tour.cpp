@@ -160,5 +160,5 @@ class ViewpointTour : public karst::Policy {
 
 }  // namespace
 
-KARST_POLICY(ViewpointTour, "viewpoint_tour", "1.1.0",
+KARST_POLICY(ViewpointTour, "viewpoint_tour", "1.2.0",
              "Plans a tour over viewpoints of all frontiers, what shows much first, anew with each decision.")

@@ -19,9 +19,8 @@ void describe(OptionTable& t, MissionOptions& o) {
         "after 1.5 s with a receding horizon (motion.trajectory)");
   t.add("decision_budget", o.decision_budget_s, "s", 0.05, 2, "simulated time a decision and its plan take");
   t.add("append", o.append,
-        "the next goal is chosen under way and its path appended, but with a receding horizon; off: the "
-        "vehicle "
-        "stops at every goal");
+        "the next goal is chosen under way and its path appended, except with a receding horizon; off: the "
+        "vehicle stops at every goal");
   t.add("append_before", o.append_before_s, "s", 0.5, 10,
         "the next goal is asked for this long before the present one is reached");
   t.add("goal_timeout", o.goal_timeout_s, "s", 2, 60, "a goal without progress for this long is abandoned");

@@ -24,7 +24,8 @@ DrawnMap fork() {
 struct Flight {
   DrawnMap map = fork();
   Bench bench;
-  explicit Flight(const Bench::Values& values = {}) : bench(karst_plugin_entry(), map, values) {
+  explicit Flight(Bench::Values values = {})
+      : bench(karst_plugin_entry(), map, (values.push_back({"gain_share", "0"}), values)) {
     bench.sensors = {karst::test::sphere_sensor(10)};
     bench.position = map.place('s');
     bench.decide();  // here it begins

@@ -54,8 +54,9 @@ const karst::Goal& goal_of(const karst::Decision& d, std::uint32_t frontier) {
 
 TEST(InformationGain, ScoreIsTheVolumeInSightOverTheTimeItTakes) {
   const DrawnMap map = passage();
-  const Bench::Values plain = {{"gain_range", "2.5"}, {"gain_depth", "100"}, {"stop_time", "2"},
-                               {"turn_time", "0"},    {"cruise", "0.5"},     {"max_volume", "1000"}};
+  const Bench::Values plain = {{"gain_range", "2.5"}, {"gain_share", "0"}, {"gain_depth", "100"},
+                               {"stop_time", "2"},    {"turn_time", "0"},  {"cruise", "0.5"},
+                               {"max_volume", "1000"}};
   Bench bench(karst_plugin_entry(), map, plain);
   bench.sensors = {karst::test::sphere_sensor(10)};
   bench.position = map.place('s');
@@ -71,10 +72,70 @@ TEST(InformationGain, ScoreIsTheVolumeInSightOverTheTimeItTakes) {
   EXPECT_NEAR(goal_of(d, 2).score, b / (2 + 7 / 1.0), 1e-9);
 }
 
+TEST(InformationGain, WithALidarTheShareOfTheViewCountsThatIsExpectedToBeCave) {
+  const DrawnMap map = passage();
+  const karst::Vec3 off(0.11, 0.07, 0.03), at = map.place('a') + off;
+  const double in_view_m3 = volume_in_sight(map, at, 2.5);
+  const auto score = [&](const char* share, std::uint32_t cells, double away_m) {
+    Bench bench(karst_plugin_entry(), map,
+                {{"gain_range", "2.5"},
+                 {"gain_share", share},
+                 {"stop_time", "2"},
+                 {"turn_time", "0"},
+                 {"cruise", "0.5"},
+                 {"max_volume", "1000"},
+                 {"passing", "0"}});
+    bench.sensors = {karst::test::sphere_sensor(10)};
+    bench.position = at + karst::Vec3(away_m, 0, 0);
+    bench.offer(1, at, at, cells);
+    return goal_of(bench.decide(), 1).score * (2 + bench.frontiers.at(0).path_length_m / 1.0) / in_view_m3;
+  };
+  EXPECT_NEAR(score("0.001", 25, 7), 0.001 * std::sqrt(25.0) * std::pow(8, 1.5), 1e-9);
+  EXPECT_NEAR(score("0.001", 100, 3), 0.001 * std::sqrt(100.0) * std::pow(4, 1.5), 1e-9);
+  EXPECT_NEAR(score("0.5", 100, 3), 1, 1e-9) << "no more than there is in view";
+}
+
+TEST(InformationGain, TheShareIsForSensorsThatSeeAllAroundAndForLooks) {
+  const DrawnMap map = passage();
+  const auto score = [&](const char* share, const char* looks, double fov_rad) {
+    Bench bench(karst_plugin_entry(), map,
+                {{"gain_range", "2.5"}, {"gain_share", share}, {"looks", looks}, {"turn_time", "0"}});
+    bench.sensors = {karst::test::sphere_sensor(10)};
+    bench.sensors.front().horizontal_fov_rad = fov_rad;
+    bench.position = map.place('s');
+    bench.offer(1, map.place('a'), map.place('a'), 25);
+    return bench.decide().goals.at(0).score;
+  };
+  EXPECT_NE(score("0.001", "24", 6.3), score("0", "24", 6.3));
+  EXPECT_EQ(score("0.001", "24", 1.4), score("0", "24", 1.4));
+  EXPECT_EQ(score("0.001", "0", 6.3), score("0", "0", 6.3)) << "openings count without a look";
+}
+
+TEST(InformationGain, WithALidarAFrontierNotLookedAtCountsAsTheMeanOfTheOthers) {
+  const DrawnMap map = passage();
+  Bench bench(karst_plugin_entry(), map,
+              {{"gain_range", "2.5"},
+               {"gain_share", "0.001"},
+               {"looks", "1"},
+               {"turn_time", "0"},
+               {"passing", "0"},
+               {"max_volume", "1000"}});
+  bench.sensors = {karst::test::sphere_sensor(10)};
+  bench.position = map.place('s');
+  bench.offer(1, map.place('a'), map.place('a'), 25);  // equally far from s as b
+  bench.offer(2, map.place('b'), map.place('b'), 100);
+  const karst::Decision d = bench.decide();
+  EXPECT_NEAR(goal_of(d, 2).score, 2 * goal_of(d, 1).score, 1e-9) << "an opening four times as large";
+}
+
 TEST(InformationGain, ANarrowOpeningIsNotWorthAllTheUnknownBehindIt) {
   const DrawnMap map = passage();
   Bench bench(karst_plugin_entry(), map,
-              {{"gain_depth", "2"}, {"gain_range", "3"}, {"stop_time", "1"}, {"turn_time", "0"}});
+              {{"gain_share", "0"},
+               {"gain_depth", "2"},
+               {"gain_range", "3"},
+               {"stop_time", "1"},
+               {"turn_time", "0"}});
   bench.sensors = {karst::test::sphere_sensor(10)};
   bench.position = map.place('s');
   bench.offer(1, map.place('a'), map.place('a') - karst::Vec3(1, 0, 0), 10);
@@ -85,7 +146,11 @@ TEST(InformationGain, ANarrowOpeningIsNotWorthAllTheUnknownBehindIt) {
 TEST(InformationGain, AGapBesideTheWayFlownIsWorthLittle) {
   const DrawnMap map = passage();
   Bench bench(karst_plugin_entry(), map,
-              {{"gain_depth", "2"}, {"gain_range", "3"}, {"stop_time", "1"}, {"turn_time", "0"}});
+              {{"gain_share", "0"},
+               {"gain_depth", "2"},
+               {"gain_range", "3"},
+               {"stop_time", "1"},
+               {"turn_time", "0"}});
   bench.sensors = {karst::test::sphere_sensor(10)};
   const karst::Vec3 a = map.place('a');
   bench.position = a + karst::Vec3(1, 0, 0);
@@ -99,7 +164,7 @@ TEST(InformationGain, AGapBesideTheWayFlownIsWorthLittle) {
 
 TEST(InformationGain, KeepsItsGoalUnlessAnotherIsBetterByMore) {
   const DrawnMap map(1.0, {"??a......s.....b??"});
-  Bench bench(karst_plugin_entry(), map, {{"turn_time", "0"}, {"keep", "0.5"}});
+  Bench bench(karst_plugin_entry(), map, {{"gain_share", "0"}, {"turn_time", "0"}, {"keep", "0.5"}});
   bench.sensors = {karst::test::sphere_sensor(10)};
   bench.position = map.place('s');
   bench.offer(1, map.place('a'), map.place('a'));
@@ -119,7 +184,8 @@ TEST(InformationGain, LookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
   std::mt19937 chance(3);
   for (int round = 0; round < 20; ++round) {
     Bench bench(karst_plugin_entry(), map,
-                {{"gain_depth", "0.5"},
+                {{"gain_share", "0"},
+                 {"gain_depth", "0.5"},
                  {"turn_time", "0"},
                  {"stop_time", "1.5"},
                  {"max_volume", "20"},
@@ -151,7 +217,11 @@ TEST(InformationGain, LookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
 TEST(InformationGain, WhatIsPassedCountsForSensorsThatSeeItOnly) {
   const DrawnMap map(1.0, {"??s....a.........b??"});
   Bench bench(karst_plugin_entry(), map,
-              {{"turn_time", "0"}, {"gain_depth", "1"}, {"max_volume", "30"}, {"stop_time", "2"}});
+              {{"gain_share", "0"},
+               {"turn_time", "0"},
+               {"gain_depth", "1"},
+               {"max_volume", "30"},
+               {"stop_time", "2"}});
   bench.position = map.place('s');
   bench.offer(1, map.place('a'), map.place('a') + karst::Vec3(0, 1, 0), 25);
   bench.offer(2, map.place('b'), map.place('b'), 25);

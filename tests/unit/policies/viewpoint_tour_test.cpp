@@ -195,11 +195,8 @@ TEST(ViewpointTour, ALargeOpeningDoesNotWaitForASmallCornerOutOfTheWay) {
     ????????????????????????
     ?a....s...............b?
     ????????????????????????)"});
-  const Bench::Values values{{"turn_time", "0"},
-                             {"gain_depth", "1"},
-                             {"min_volume", "0.1"},
-                             {"max_volume", "1000"},
-                             {"min_cells", "1"}};
+  const Bench::Values values{{"turn_time", "0"},    {"gain_share", "0"},    {"gain_depth", "1"},
+                             {"min_volume", "0.1"}, {"max_volume", "1000"}, {"min_cells", "1"}};
   const karst::Decision small = decide(map, {{'a', 1}, {'b', 60}}, values);
   EXPECT_EQ(small.goals.at(0).frontier_id, 2u);
   EXPECT_EQ(small.goals.at(1).frontier_id, 1u);
