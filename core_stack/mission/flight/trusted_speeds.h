@@ -27,15 +27,11 @@ SensedAhead sensed_ahead(const CoreOptions& options, const VehicleDescription& v
 /// Whether the rule applies: not to missions that allow no more than kTrusted_mps.
 bool by_trust(const MotionLimits& motion);
 
-/// The kind of trajectories that are flown, never `automatic`. Polynomials and plans of the receding horizon
-/// do not keep limits that differ along a path: where the rule applies, trajectories are sampled.
-TrajectoryKind flown_trajectory(const MotionLimits& motion, const VehicleDescription& vehicle);
-
 /// In narrow places, and where the safety supervisor asks for it.
 double slow_speed_mps(const CoreOptions& options);
 
 /// The options as this vehicle flies: with no more than the speed that its sensors allow in open space, which
-/// is also what its way home is planned with, and with the kind of its trajectories.
+/// is also what its way home is planned with, and with the kind of its trajectories, never `automatic`.
 CoreOptions as_flown(CoreOptions options, const VehicleDescription& vehicle);
 
 /// The greatest speed of all, where the sensors see the way as far as they reach.
