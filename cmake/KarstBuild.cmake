@@ -113,7 +113,8 @@ function(karst_vehicle name)
 endfunction()
 
 # karst_test(NAME sources... [LINK libs...] [LABELS labels...]): a GoogleTest program, one CTest entry a test.
-# Label "unit" is the default; "flight" marks closed-loop missions.
+# Label "unit" is the default; "flight" marks closed-loop missions. A machine that has no times of its own yet starts
+# flights and browsers first, so that no core idles while the last of them runs.
 function(karst_test name)
   cmake_parse_arguments(A "" "" "LINK;LABELS" ${ARGN})
   if(NOT A_LABELS)
@@ -138,6 +139,10 @@ function(karst_test name)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
     return()
   endif()
-  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${A_LABELS}" TIMEOUT 900
+  set(cost 1)
+  if(NOT "unit" IN_LIST A_LABELS)
+    set(cost 20)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${A_LABELS}" TIMEOUT 900 COST ${cost}
                        ENVIRONMENT "RC_PARAMS=seed=20261121")  # property tests try the same cases every time
 endfunction()
