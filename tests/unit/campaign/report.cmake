@@ -6,5 +6,5 @@ karst_test(campaign_report_browser_test
   LINK karst_campaign_report LABELS browser)
 
 # Not a test: makes a page to look at.
-add_executable(show_campaign report/show_campaign.cpp fake_campaign.cpp)
+add_executable(show_campaign EXCLUDE_FROM_ALL report/show_campaign.cpp fake_campaign.cpp)
 target_link_libraries(show_campaign PRIVATE karst_campaign_report)
