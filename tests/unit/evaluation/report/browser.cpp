@@ -16,8 +16,11 @@ namespace {
 
 constexpr const char* kChromium =
     "chromium --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-sync "
-    "--disable-background-networking --disable-component-update --use-angle=swiftshader "
-    "--enable-unsafe-swiftshader --window-size=1400,1000 --virtual-time-budget=3000 ";
+    "--disable-background-networking --disable-component-update --window-size=1400,1000 "
+    "--virtual-time-budget=3000 ";
+/// To draw the view in 3D by software takes as long as all else.
+constexpr const char* kDrawn = "--use-angle=swiftshader --enable-unsafe-swiftshader ";
+constexpr const char* kTexts = "--disable-3d-apis ";
 
 ShownPage dumped(const std::filesystem::path& page, const std::string& hash, const std::string& options) {
   TemporaryDirectory profile;
@@ -157,20 +160,25 @@ std::string text_of(const std::string& dom, const std::string& id) {
 }  // namespace
 
 ShownPage show_page(const std::filesystem::path& page, const std::string& hash) {
-  return dumped(page, hash, "");
+  return dumped(page, hash, kDrawn);
+}
+
+ShownPage show_texts(const std::filesystem::path& page, const std::string& hash) {
+  return dumped(page, hash, kTexts);
 }
 
 PhoneLayout lay_out_on_phone(const std::filesystem::path& page) {
   const TemporaryDirectory dir;
   dir.write("phone.html", phone_frame(bytes_of(page)));
-  const std::string dom = dumped(dir.path() / "phone.html", "", "--allow-file-access-from-files").dom;
+  const std::string dom =
+      dumped(dir.path() / "phone.html", "", std::string(kDrawn) + "--allow-file-access-from-files").dom;
   return {text_of(dom, "wide"), text_of(dom, "small"), text_of(dom, "open")};
 }
 
 std::string drawings_on(const std::filesystem::path& page, int width_px) {
   const TemporaryDirectory dir;
   dir.write("drawings.html", drawings_frame(bytes_of(page), width_px));
-  const std::string options = "--allow-file-access-from-files";
+  const std::string options = std::string(kTexts) + "--allow-file-access-from-files";
   return text_of(dumped(dir.path() / "drawings.html", "", options).dom, "drawings");
 }
 
@@ -178,7 +186,7 @@ PrintedPages print_page(const std::filesystem::path& page) {
   const TemporaryDirectory dir;
   const std::filesystem::path pdf = dir.path() / "page.pdf";
   const std::string command =
-      std::string(kChromium) + "--user-data-dir=" + (dir.path() / "profile").string() +
+      std::string(kChromium) + kTexts + "--user-data-dir=" + (dir.path() / "profile").string() +
       " --print-to-pdf=" + pdf.string() + " 'file://" + page.string() + "' >/dev/null 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
   const std::string bytes = bytes_of(pdf);
@@ -199,7 +207,8 @@ PrintedPages print_page(const std::filesystem::path& page) {
 std::string cut_on_desktop(const std::filesystem::path& page) {
   const TemporaryDirectory dir;
   dir.write("desktop.html", desktop_frame(bytes_of(page)));
-  return text_of(dumped(dir.path() / "desktop.html", "", "--allow-file-access-from-files").dom, "cut");
+  const std::string options = std::string(kTexts) + "--allow-file-access-from-files";
+  return text_of(dumped(dir.path() / "desktop.html", "", options).dom, "cut");
 }
 
 }  // namespace karst::test

@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::show_page;
+using test::show_texts;
 using test::TemporaryDirectory;
 
 void write_small_run(const fs::path& run_dir) {
@@ -44,7 +45,7 @@ TEST(ReportInBrowser, TellsInItsHeadHowTheFlightEndedAndIsGreenOnlyIfThatWasMean
   TemporaryDirectory dir;
   write_small_run(dir.path());
   write_report(dir.path());
-  const std::string well = show_page(dir.path() / "report.html").body;
+  const std::string well = show_texts(dir.path() / "report.html").body;
   EXPECT_NE(well.find("<span id=\"outcome\" class=\"badge landed\">✓ landed</span>"), std::string::npos);
   EXPECT_NE(well.find("lateral explored "), std::string::npos);
   EXPECT_NE(well.find("; home after "), std::string::npos);
@@ -52,7 +53,7 @@ TEST(ReportInBrowser, TellsInItsHeadHowTheFlightEndedAndIsGreenOnlyIfThatWasMean
       << R"({"t": 3, "kind": "safety", "action": "home", "reason": "no sensor sees the cave any more"})"
       << "\n";
   write_report(dir.path());
-  const std::string early = show_page(dir.path() / "report.html").body;
+  const std::string early = show_texts(dir.path() / "report.html").body;
   EXPECT_NE(early.find("✕ landed, not as planned</span>"), std::string::npos);
   EXPECT_EQ(early.find("badge landed"), std::string::npos);
 }
@@ -72,7 +73,7 @@ TEST(ReportInBrowser, IsNotGreenForALandingWithoutAGoalEverFlown) {
   write_small_run(dir.path());
   drop_events(dir.path(), "goal");
   write_report(dir.path());
-  const std::string body = show_page(dir.path() / "report.html").body;
+  const std::string body = show_texts(dir.path() / "report.html").body;
   EXPECT_NE(body.find("<span id=\"outcome\" class=\"badge nowhere\">landed without exploring</span>"),
             std::string::npos);
 }
@@ -85,7 +86,7 @@ TEST(ReportInBrowser, RoundsTheFlightTimeAsItsSentenceDoes) {
               std::string(R"({"policy": "lateral", "explored_volume_m3": 120.25, "flight_time_s": )") +
                   time_s + "}");
     write_report(dir.path());
-    const std::string body = show_page(dir.path() / "report.html").body;
+    const std::string body = show_texts(dir.path() / "report.html").body;
     const std::string end = "<span>flight time</span>", begin = "<div class=\"figure\">";
     const std::size_t to = body.find(end), from = body.rfind(begin, to) + begin.size();
     const std::size_t sentence = body.find(" in ", body.find("id=\"summary\""));
@@ -104,12 +105,12 @@ TEST(ReportInBrowser, DoesNotTellTheSpeedOfTouchdownOnceItIsOnTheGround) {
   TemporaryDirectory dir;
   write_small_run(dir.path());
   write_report(dir.path());
-  const std::string end = show_page(dir.path() / "report.html").body;
+  const std::string end = show_texts(dir.path() / "report.html").body;
   EXPECT_NE(end.find("<div class=\"phase\">done, on the ground</div>"), std::string::npos);
   EXPECT_EQ(end.find("<dt>speed</dt>"), std::string::npos);
   EXPECT_EQ(end.find("<dt>clearance</dt>"), std::string::npos);
   EXPECT_NE(end.find("<dt>explored</dt>"), std::string::npos);
-  EXPECT_NE(show_page(dir.path() / "report.html", "t=15").body.find("<dt>speed</dt>"), std::string::npos);
+  EXPECT_NE(show_texts(dir.path() / "report.html", "t=15").body.find("<dt>speed</dt>"), std::string::npos);
 }
 
 /// A flight whose second goal is accepted at 6 s, while the first is flown to until 9 s.
@@ -134,11 +135,11 @@ TEST(ReportInBrowser, SaysOfAnAcceptedGoalThatTheOneUnderWayComesFirst) {
   write_queued_goals(dir);
   write_report(dir.path());
   const std::string queued = "<div>accepted: next, after the goal under way</div>", row = "<dt>after it</dt>";
-  const std::string before = show_page(dir.path() / "report.html", "t=7").body;
+  const std::string before = show_texts(dir.path() / "report.html", "t=7").body;
   EXPECT_NE(before.find("<div class=\"why\">4.4&nbsp;m away</div>"), std::string::npos);
   EXPECT_NE(before.find(row + "<dd>goal 2, (12.0, 0.0, 0.0) m</dd>"), std::string::npos);
   EXPECT_NE(before.find(queued), std::string::npos);
-  const std::string after = show_page(dir.path() / "report.html", "t=10").body;
+  const std::string after = show_texts(dir.path() / "report.html", "t=10").body;
   EXPECT_NE(after.find("<div class=\"why\">1.5&nbsp;m away</div>"), std::string::npos);
   EXPECT_EQ(after.find(row), std::string::npos);
   EXPECT_EQ(after.find(queued), std::string::npos);
@@ -183,7 +184,7 @@ TEST(ReportInBrowser, ListsTheGoalsOfADecisionWithScoreReasonAndFate) {
   TemporaryDirectory dir;
   write_small_run(dir.path());
   write_report(dir.path());
-  const std::string body = show_page(dir.path() / "report.html", "t=15").body;  // of the fourth decision
+  const std::string body = show_texts(dir.path() / "report.html", "t=15").body;  // of the fourth decision
   const std::size_t list = body.find("<ol class=\"goals\">");
   ASSERT_NE(list, std::string::npos);
   const std::string goals = body.substr(list, body.find("</ol>", list) - list);
@@ -216,7 +217,7 @@ TEST(ReportInBrowser, NamesWhatIsNotKnownInOneLineInsteadOfDashes) {
   dir.write("metrics.json", R"({"policy": "lateral", "path_length_m": 60.5, "coverage": null,
                                 "explored_volume_m3": 120.25})");
   write_report(dir.path());
-  const std::string body = show_page(dir.path() / "report.html").body;
+  const std::string body = show_texts(dir.path() / "report.html").body;
   EXPECT_NE(body.find("not known: flight time, coverage, mean speed, least clearance"), std::string::npos);
   EXPECT_EQ(body.find("<b>–"), std::string::npos) << "no card without a value";
   EXPECT_NE(body.find("<p id=\"metrics-unknown\" class=\"quiet\">not known: coverage</p>"),
@@ -229,7 +230,7 @@ TEST(ReportInBrowser, GivesTheUnitOfEachFigure) {
   write_small_run(dir.path());
   dir.write("metrics.json", R"({"path_length_m": 60.5, "explored_volume_m3": 120.25, "contacts": 0})");
   write_report(dir.path());
-  const std::string body = show_page(dir.path() / "report.html").body;
+  const std::string body = show_texts(dir.path() / "report.html").body;
   for (const char* row :
        {"<td>path_length_m</td><td class=\"number\">60.50</td><td class=\"unit quiet\">m</td>",
         "<td>explored_volume_m3</td><td class=\"number\">120.3</td><td class=\"unit quiet\">m³</td>",
@@ -255,7 +256,7 @@ TEST(ReportInBrowser, ShowsThreeDrawingsOfTheCaveThatFitAPhone) {
                       (dir.path() / "map").string());
   write_report(dir.path(), cave_drawing::report_drawings(dir.path()));
   EXPECT_EQ(test::drawings_on(dir.path() / "report.html", 400), "Plan; Extended profile; Projected profile");
-  const std::string body = show_page(dir.path() / "report.html").body;
+  const std::string body = show_texts(dir.path() / "report.html").body;
   EXPECT_NE(body.find("<section id=\"cave-drawings\" aria-label=\"Drawings\">"), std::string::npos);
   EXPECT_NE(body.find("<code>karst draw RUN --out drawings/cave</code>"), std::string::npos);
 }
@@ -269,7 +270,7 @@ TEST(ReportInBrowser, KeepsTheIdsOfDrawingsApart) {
       "<path d=\"M0 0H9V9Z\" fill=\"#aaaaaa\" clip-path=\"url(#a)\"/></svg>";
   write_report(dir.path(), {{{"One", svg}, {"Two", svg}}, ""});
   EXPECT_EQ(test::drawings_on(dir.path() / "report.html", 400), "One; Two");
-  const std::string body = show_page(dir.path() / "report.html").body;
+  const std::string body = show_texts(dir.path() / "report.html").body;
   for (const char* part : {"<clipPath id=\"drawing1-a\">", "<clipPath id=\"drawing2-a\">",
                            "fill=\"#aaaaaa\" clip-path=\"url(#drawing2-a)\""})
     EXPECT_NE(body.find(part), std::string::npos) << part;
@@ -297,7 +298,7 @@ TEST(ReportInBrowser, SaysWhyThereAreNoDrawings) {
   TemporaryDirectory dir;
   write_small_run(dir.path());
   write_report(dir.path(), cave_drawing::report_drawings(dir.path()));
-  const std::string body = show_page(dir.path() / "report.html").body;
+  const std::string body = show_texts(dir.path() / "report.html").body;
   EXPECT_NE(body.find("class=\"unknown quiet\">No drawings: the run holds no map.bt"), std::string::npos);
   EXPECT_EQ(test::drawings_on(dir.path() / "report.html", 400), "");
 }
@@ -394,7 +395,7 @@ TEST(ReportInBrowser, OfATeamShowsTheNewestStateOfEachObject) {
 )");
   write_team_report(dir.path());
   const auto at = [&](const char* moment) {
-    return show_page(dir.path() / "report.html", std::string("t=") + moment).body;
+    return show_texts(dir.path() / "report.html", std::string("t=") + moment).body;
   };
   const std::string before = at("6.5");
   EXPECT_NE(before.find("<dt>finds, robot by robot</dt><dd>2</dd><dt>known at the base</dt><dd>0</dd>"),
