@@ -124,16 +124,23 @@ function(karst_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   # Tests name their helpers alike: not more than eight at a time.
   set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
-  # Compiled a quarter sooner than with -O2; what is tested is in libraries that have it. With -O1, g++ 12 warns of
-  # std::string and std::optional where nothing is wrong (GCC PR 105651, 80635).
-  target_compile_options(${name} PRIVATE ${KARST_WARNINGS} $<$<CONFIG:Release>:-O1>)
+  # What is tested is in libraries that have -O2. -O1 is compiled a quarter sooner, and -O0 in half the time: for folders
+  # that set KARST_TESTS_PLAIN, as their tests calculate little themselves. With -O1, g++ 12 warns of std::string and
+  # std::optional where nothing is wrong (GCC PR 105651, 80635).
+  set(level -O1)
+  set(pch karst_test_pch)
+  if(KARST_TESTS_PLAIN)
+    set(level -O0)
+    set(pch karst_plain_test_pch)
+  endif()
+  target_compile_options(${name} PRIVATE ${KARST_WARNINGS} $<$<CONFIG:Release>:${level}>)
   target_compile_options(${name} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-array-bounds -Wno-stringop-overflow
                                          -Wno-stringop-overread -Wno-maybe-uninitialized>)
   target_compile_definitions(${name} PRIVATE KARST_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
                                              KARST_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest_main)
   if(NOT "${A_UNPARSED_ARGUMENTS}" MATCHES "\\.c(;|$)")
-    karst_use_pch(${name} karst_test_pch)
+    karst_use_pch(${name} ${pch})
   endif()
   if(KARST_SANITIZE AND "flight" IN_LIST A_LABELS)  # too slow to fly, and not built
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
