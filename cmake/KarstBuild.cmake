@@ -124,9 +124,9 @@ function(karst_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   # Tests name their helpers alike: not more than eight at a time.
   set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
-  # What is tested is in libraries that have -O2. -O1 is compiled a quarter sooner, and -O0 in half the time: for folders
-  # that set KARST_TESTS_PLAIN, as their tests calculate little themselves. With -O1, g++ 12 warns of std::string and
-  # std::optional where nothing is wrong (GCC PR 105651, 80635).
+  # What is tested is in libraries that have -O2. -O1 is compiled a quarter sooner, and -O0 in half the time: for
+  # folders that set KARST_TESTS_PLAIN, as their tests calculate little themselves. With -O1, g++ 12 warns of
+  # std::string and std::optional where nothing is wrong (GCC PR 105651, 80635).
   set(level -O1)
   set(pch karst_test_pch)
   if(KARST_TESTS_PLAIN)
