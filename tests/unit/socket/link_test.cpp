@@ -661,7 +661,7 @@ TEST(RealTime, ACoreThatStoodStillGivesTheVehicleToItsAutopilotFirst) {
     std::this_thread::sleep_for(Wait(700));  // in all longer than a vehicle may be silent
   });
   executive.at(900 * kMillisecond, [&] { stands_still = false; });
-  executive.run_until(30 * kSecond, [&] { return log.says("hear each other again"); });
+  executive.run_until(30 * kSecond, [&] { return !stands_still && log.says("authority autopilot: "); });
   vehicle.finish();
   EXPECT_FALSE(log.says("lost"));
   const auto given = std::find_if(log.lines.begin(), log.lines.end(), [](const std::string& line) {
