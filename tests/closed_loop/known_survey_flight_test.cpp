@@ -40,12 +40,13 @@ struct Flown {
   std::string text;
 };
 
-Flown fly(const std::filesystem::path& folder, const std::string& name, const std::string& more) {
+Flown fly(const std::filesystem::path& folder, const std::string& name, const std::string& more,
+          const std::string& time = "110s") {
   const std::filesystem::path run = folder / name;
   const Output out = run_karst("fly --cave " + (folder / "cave.info").string() +
                                " --policy beyond_survey --seed 1 --quiet --no-report"
-                               " --set mission.max_flight_time=150s --out " +
-                               run.string() + more);
+                               " --set mission.max_flight_time=" +
+                               time + " --out " + run.string() + more);
   return {nlohmann::json::parse(bytes_of(run / "metrics.json"), nullptr, false), out.text};
 }
 
@@ -80,8 +81,8 @@ TEST(KnownSurveyFlight, InProcessAndInAProcessOfItsOwnThePolicyKnowsTheSame) {
   SKIP_WITHOUT_SURVEX();
   const auto folder = folder_with_a_fork("known_survey_isolation");
   const std::string known = " --set survey.file=" + (folder / "known.th").string();
-  fly(folder, "own", known + " --set policy.isolation=process --record-requests");
-  fly(folder, "same", known + " --set policy.isolation=in_process");
+  fly(folder, "own", known + " --set policy.isolation=process --record-requests", "70s");
+  fly(folder, "same", known + " --set policy.isolation=in_process", "70s");
   const std::string events = bytes_of(folder / "own" / "events.jsonl");
   EXPECT_NE(events.find("beyond the survey"), std::string::npos);
   EXPECT_EQ(events, bytes_of(folder / "same" / "events.jsonl"));

@@ -61,7 +61,8 @@ TEST(Objects, AreFoundAndReportedAtTheStart) {
   const std::string cave = passage(folder);
   // At 2 m/s it passes three of the eight in fewer than six images.
   const std::string settings =
-      " --set simulator.objects.count=2 --set simulator.battery_minutes=5min --set motion.max_speed=1 --seed "
+      " --set simulator.objects.count=2 --set simulator.battery_minutes=2.5min --set motion.max_speed=1 "
+      "--seed "
       "5";
   const json m = fly(cave, folder / "one", settings + " --threads 1");
   expect_known(m, 8, 0.3);
@@ -91,8 +92,8 @@ TEST(Objects, OfATeamAreKnownAtTheBaseInTheEnd) {
   const auto folder = fresh_folder("objects_team");
   const auto run = folder / "run";
   const json m = fly(passage(folder), run,
-                     " --set simulator.objects.count=2 --seed 3 --set team.robots=3 --set team.stagger=40s"
-                     " --set team.linger=30s --set simulator.battery_minutes=1.8min"
+                     " --set simulator.objects.count=2 --seed 3 --set team.robots=3 --set team.stagger=25s"
+                     " --set team.linger=20s --set simulator.battery_minutes=1.2min"
                      " --set radio.propagation=distance --set radio.range=15m"
                      " --set homing.landing.link.range=15m --set homing.landing.link.rock_loss=0"
                      " --set homing.landing.link.spare=1");

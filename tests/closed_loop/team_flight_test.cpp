@@ -10,11 +10,11 @@ namespace {
 
 using nlohmann::json;
 
-/// Poses from a sensor, a radio of 15 m by distance alone, a battery for little more than a minute.
+/// Poses from a sensor, a radio of 15 m by distance alone, a battery for a minute.
 std::string team_of(int robots, const std::string& strategy, const std::string& more = "") {
   return " --policy nearest_frontier --set team.robots=" + std::to_string(robots) +
          " --set team.strategy=" + strategy +
-         " --set team.stagger=40s --set team.linger=30s --set simulator.battery_minutes=1.8min"
+         " --set team.stagger=25s --set team.linger=20s --set simulator.battery_minutes=1.2min"
          " --set simulator.pose.fitted=always --set localization.source=pose_sensor"
          " --set radio.propagation=distance --set radio.range=15m --set homing.landing.link.range=15m"
          " --set homing.landing.link.rock_loss=0 --set homing.landing.link.spare=1 " +
@@ -238,7 +238,7 @@ TEST(Team, AVehicleThatHearsNobodyAndIsAloneInTheCaveGivesWayToNothing) {
                       " --policy nearest_frontier --set simulator.vehicle=lidar_uav --set team.robots=2"
                       " --set team.stagger=200s --set radio.silent_after=0.1s --set radio.silent_for=600s"
                       " --set localization.source=lidar --set simulator.gust=3 --set simulator.air.haze=0.03"
-                      " --set simulator.air.stirred=0.3 --set mission.max_flight_time=60s");
+                      " --set simulator.air.stirred=0.3 --set mission.max_flight_time=45s");
   ASSERT_EQ(f.robots.size(), 2u) << f.output.text;
   EXPECT_EQ(f.count(f.truth, "contact"), 0);
   const auto record = evaluation::read_run(folder / "run" / "robot_1");
@@ -255,7 +255,8 @@ TEST(Team, RetreatsBeforeOneThatComesHomeWhereNoneGetsBy) {
       draw_cave(folder, {{{-4, -4, 0}, {4, 4, 3}}, {{3, -0.9, 0}, {60, 0.9, 1.9}}}, {0, 0, 1});
   const Flown f = fly(cave, folder / "run",
                       team_of(2, "return_to_base",
-                              "--set radio.range=30m --set homing.landing.link.range=30m"
+                              "--set team.stagger=40s --set team.linger=30s --set radio.range=30m"
+                              " --set homing.landing.link.range=30m"
                               " --set simulator.battery_minutes=2.2min"));  // enough to go in a second time
   expect_all_well(f, 2);
   std::vector<double> x;  // of robot 2, every five seconds
