@@ -112,11 +112,11 @@ function(karst_vehicle name)
   install(TARGETS ${target} LIBRARY DESTINATION lib/karst/vehicles)
 endfunction()
 
-# karst_test(NAME sources... [LINK libs...] [LABELS labels...]): a GoogleTest program, one CTest entry a test.
-# Label "unit" is the default; "flight" marks closed-loop missions. A machine that has no times of its own yet starts
+# karst_test(NAME sources... [OPTIMIZED] [LINK libs...] [LABELS labels...]): a GoogleTest program, one CTest entry a
+# test. Label "unit" is the default; "flight" marks closed-loop missions. A machine that has no times of its own yet starts
 # flights and browsers first, so that no core idles while the last of them runs.
 function(karst_test name)
-  cmake_parse_arguments(A "" "" "LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(A "OPTIMIZED" "" "LINK;LABELS" ${ARGN})
   if(NOT A_LABELS)
     set(A_LABELS unit)
   endif()
@@ -125,11 +125,11 @@ function(karst_test name)
   # Tests name their helpers alike: not more than eight at a time.
   set_target_properties(${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
   # What is tested is in libraries that have -O2. -O1 is compiled a quarter sooner, and -O0 in half the time: for
-  # folders that set KARST_TESTS_PLAIN, as their tests calculate little themselves. With -O1, g++ 12 warns of
+  # folders that set KARST_TESTS_PLAIN, as most of their tests calculate little themselves. With -O1, g++ 12 warns of
   # std::string and std::optional where nothing is wrong (GCC PR 105651, 80635).
   set(level -O1)
   set(pch karst_test_pch)
-  if(KARST_TESTS_PLAIN)
+  if(KARST_TESTS_PLAIN AND NOT A_OPTIMIZED)
     set(level -O0)
     set(pch karst_plain_test_pch)
   endif()
