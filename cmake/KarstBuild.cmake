@@ -113,8 +113,8 @@ function(karst_vehicle name)
 endfunction()
 
 # karst_test(NAME sources... [OPTIMIZED] [LINK libs...] [LABELS labels...]): a GoogleTest program, one CTest entry a
-# test. Label "unit" is the default; "flight" marks closed-loop missions. A machine that has no times of its own yet starts
-# flights and browsers first, so that no core idles while the last of them runs.
+# test. Label "unit" is the default; "flight" marks closed-loop missions. A machine that has no times of its own yet
+# starts flights and browsers first, so that no core idles while the last of them runs.
 function(karst_test name)
   cmake_parse_arguments(A "OPTIMIZED" "" "LINK;LABELS" ${ARGN})
   if(NOT A_LABELS)
