@@ -35,7 +35,7 @@ class InformationGain : public karst::Policy {
   void on_event(const karst::Event& event) override { open_.on_event(event); }
 
  private:
-  static constexpr std::size_t batch = 8;
+  static constexpr std::size_t batch = 4;
 
   struct Candidate {
     const karst::Frontier* frontier;
@@ -45,15 +45,16 @@ class InformationGain : public karst::Policy {
 
   /// Sorted by the upper bound of the score, highest first.
   std::vector<Candidate> candidates_of(const karst::Request& request,
-                                       const std::vector<karst::OpenFrontiers::Candidate>& open) const {
+                                       const std::vector<karst::OpenFrontiers::Candidate>& open) {
     const bool sees_what_it_passes = karst::sees_all_around(request);
     std::vector<Candidate> out;
     for (const auto& [f, revisit_penalty_m] : open) {
       const double t = stop_s_ + (f->path_length_m + revisit_penalty_m) / (cruise_ * request.max_speed_mps) +
                        turn_s_ * karst::turn_fraction(request, *f);
+      const double most = std::min(gain_.most_m3(request, *f), max_volume_m3_);
       const double passed = sees_what_it_passes ? passed_m3(request, *f) : 0;
       const double keep = karst::under_way(request, *f) ? 1 + keep_ : 1;
-      out.push_back({f, t, passed, keep * (max_volume_m3_ + passed) / t});
+      out.push_back({f, t, passed, keep * (most + passed) / t});
     }
     std::sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
       return a.most != b.most ? a.most > b.most : a.frontier->id < b.frontier->id;
