@@ -300,7 +300,6 @@ void MissionControl::fly_phase() {
     case Phase::explore:
       earlier_map_.step();
       exploration_.step();
-      steering_.step();
       return_home_.watch_time();
       break;
     case Phase::home:
@@ -503,10 +502,15 @@ void MissionControl::on_map(const MapNews& news) {
   goals_.note_frontier(news.frontier, news.frontier_open);
   if (team_) team_->work.note_seen(news.bodies, news.stamp);
   onboard_.flight.prepare_landing(news.descent_path);
-  if (!news.blocked_after_m || path_.blocked() || onboard_.flight.at_rest(now())) return;
+  if (news.blocked_after_m) leave_blocked_path(*news.blocked_after_m);
+  steering_.step();
+}
+
+void MissionControl::leave_blocked_path(double after_m) {
+  if (path_.blocked() || onboard_.flight.at_rest(now())) return;
   if (phases_.in(Phase::takeoff) && take_off_.below_roof()) return;
   goals_.drop_next(GoalFate::unreachable, kPathForbidden, now());
-  path_.avoid(*news.blocked_after_m, phases_, now());
+  path_.avoid(after_m, phases_, now());
 }
 
 void MissionControl::keep_safe() {

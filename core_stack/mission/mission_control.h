@@ -130,6 +130,7 @@ class MissionControl final : public VehicleSink {
   void forget_causes();
   MapQuestion map_question() const;
   void on_map(const MapNews& news);
+  void leave_blocked_path(double after_m);
   void record();
   void note_speed_limit();
   void enter(Phase phase, const std::string& reason);

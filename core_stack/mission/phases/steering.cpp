@@ -5,7 +5,7 @@
 namespace karst::core {
 namespace {
 
-constexpr TimeNs kSteeringPeriod = 200 * kMillisecond, kBudget = 100 * kMillisecond;
+constexpr TimeNs kSteeringPeriod = 200 * kMillisecond, kBudget = 60 * kMillisecond;
 constexpr double kSame_m = 0.01;
 /// A plan that begins farther from where the vehicle is by then is not flown: it would cut a corner.
 constexpr double kOff_m = 0.05, kOff_mps = 0.25;

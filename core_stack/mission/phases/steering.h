@@ -17,7 +17,7 @@ class Steering {
   };
   Steering(Onboard& onboard, const Parts& parts) : onboard_(onboard), parts_(parts) {}
 
-  /// Call ten times a second.
+  /// Call when the map has changed: a scan then changes the course soonest.
   void step();
 
  private:
