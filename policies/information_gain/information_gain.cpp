@@ -116,5 +116,5 @@ class InformationGain : public karst::Policy {
 
 }  // namespace
 
-KARST_POLICY(InformationGain, "information_gain", "1.2.0",
+KARST_POLICY(InformationGain, "information_gain", "1.2.1",
              "Flies to the frontier that shows the most unknown space for the time it takes.")

@@ -162,10 +162,11 @@ void describe(OptionTable& t, MotionLimits& o) {
   t.add("max_heading_rate", o.max_heading_rate_radps, "rad/s", 0.05, 10, "greatest rate of turning");
   t.add("max_heading_acceleration", o.max_heading_acceleration_radps2, "rad/s^2", 0.05, 50,
         "greatest change of the rate of turning");
-  t.add("trajectory", o.trajectory,
-        "how paths become motion: replanned with a receding horizon while exploring, the paper's sampling, or "
-        "minimum-snap polynomials; above 2 m/s always the paper's (see " +
-            doc_path("docs/planning.md") + ")");
+  t.add(
+      "trajectory", o.trajectory,
+      "how paths become motion: replanned with a receding horizon while exploring, the paper's sampling, or "
+      "minimum-snap polynomials; above 2 m/s always the paper's (see " +
+          doc_path("docs/planning.md") + ")");
 }
 
 TrajectorySample Trajectory::at(TimeNs t) const {

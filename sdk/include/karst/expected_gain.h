@@ -75,11 +75,12 @@ class ExpectedGain {
   double most_m3(const Request& request, const Frontier& f) {
     begin_decision(request);
     if (share <= 0 || !sees_all_around(request)) return behind_openings_m3(request, f);
+    const double edge_m = request.map.resolution_m();
     double in_view_m3 = 0;
     for (const Sensor& s : request.sensors)
       in_view_m3 += s.horizontal_fov_rad * (std::sin(s.high_elevation_rad) - std::sin(s.low_elevation_rad)) *
-                    std::pow(std::min(s.max_range_m, range_m), 3) / 3;
-    return in_view_m3 * share_of_cave(f, request.map.resolution_m());
+                    std::pow(std::min(s.max_range_m, range_m) + edge_m, 3) / 3;  // whole cells are counted
+    return in_view_m3 * share_of_cave(f, edge_m);
   }
 
   /// Volume in m^3 expected behind the opening itself, independent of the viewpoint.

@@ -214,6 +214,35 @@ TEST(InformationGain, LookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
   }
 }
 
+TEST(InformationGain, WithALidarLookingNoFartherThanSomethingCouldBeBetterLosesNothing) {
+  std::string row = "??";
+  for (int i = 0; i < 80; ++i) row += '.';
+  const DrawnMap map(1.0, {row + "??"});
+  std::mt19937 chance(5);
+  for (int round = 0; round < 20; ++round) {
+    Bench bench(karst_plugin_entry(), map,
+                {{"gain_share", "0.0003"},
+                 {"turn_time", "0"},
+                 {"stop_time", "1.5"},
+                 {"max_volume", "1000"},
+                 {"passing", "0"},
+                 {"gain_range", "2"},
+                 {"looks", "12"}});
+    bench.sensors = {karst::test::sphere_sensor(10)};
+    bench.position = map.center_of({40, 0, 0});
+    double best = 0;
+    for (int x = 3; x < 80; x += 4) {
+      const auto cells = 1 + static_cast<std::uint32_t>(chance() % 100);
+      const karst::Vec3 at = map.center_of({x, 0, 0});
+      bench.offer(static_cast<std::uint32_t>(x), at, at, cells);
+      const double away_m = std::abs(x - 40);
+      const double share = std::min(1.0, 0.0003 * std::sqrt(cells) * std::pow(1 + away_m, 1.5));
+      best = std::max(best, share * volume_in_sight(map, at, 2) / (1.5 + away_m / 1.5));
+    }
+    EXPECT_NEAR(bench.decide().goals.at(0).score, best, 1e-9);
+  }
+}
+
 TEST(InformationGain, WhatIsPassedCountsForSensorsThatSeeItOnly) {
   const DrawnMap map(1.0, {"??s....a.........b??"});
   Bench bench(karst_plugin_entry(), map,
