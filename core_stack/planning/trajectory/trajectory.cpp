@@ -164,8 +164,9 @@ void describe(OptionTable& t, MotionLimits& o) {
         "greatest change of the rate of turning");
   t.add(
       "trajectory", o.trajectory,
-      "how paths become motion: replanned with a receding horizon while exploring, the paper's sampling, or "
-      "minimum-snap polynomials; above 2 m/s always the paper's (see " +
+      "how paths become motion: the paper's sampling, minimum-snap polynomials, or replanned with a receding "
+      "horizon while exploring; auto: a receding horizon for a vehicle without a LiDAR, else the paper's "
+      "sampling; above 2 m/s always the paper's (see " +
           doc_path("docs/planning.md") + ")");
 }
 
