@@ -35,7 +35,7 @@ class ExpectedGain {
     p.add("gain_share", share, "", 0, 1,
           "with a sensor that sees all around: share of the unknown volume in view of an opening of 1 m^2 "
           "beside the way flown that is expected to be cave; 0: openings count as for a camera");
-    p.add("looks", looks, 0, 4096, "looks computed in one decision at most, the nearest first");
+    p.add("looks", looks, 0, 4096, "looks computed in one decision at most");
   }
 
   /// Volume in m^3 expected to be seen from the viewpoint of each frontier. Most of the unknown cells in view
@@ -55,13 +55,13 @@ class ExpectedGain {
     if (fresh.size() > looks_left_) fresh.resize(looks_left_);
     looks_left_ -= fresh.size();
     look(request, fresh);
-    const bool by_share = share > 0 && !known_.empty() && sees_all_around(request);
+    const bool shares = by_share(request);
     const double edge_m = request.map.resolution_m(), mean_m3 = mean_in_view_m3();
     std::vector<double> out;
     for (const Frontier* f : frontiers) {
       const auto found = known_.find(f->id);
       const bool looked = found != known_.end();
-      if (by_share) {
+      if (shares) {
         out.push_back((looked ? found->second.volume_m3 : mean_m3) * share_of_cave(*f, edge_m));
       } else {
         const double max_m3 = behind_openings_m3(request, *f);
@@ -74,7 +74,7 @@ class ExpectedGain {
   /// Upper bound in m^3 of what volumes_m3 says of a frontier, at the cost of no look.
   double most_m3(const Request& request, const Frontier& f) {
     begin_decision(request);
-    if (share <= 0 || !sees_all_around(request)) return behind_openings_m3(request, f);
+    if (!by_share(request)) return behind_openings_m3(request, f);
     const double edge_m = request.map.resolution_m();
     double in_view_m3 = 0;
     for (const Sensor& s : request.sensors)
@@ -111,6 +111,9 @@ class ExpectedGain {
     if (away_m >= ahead_m) return 1.0;
     return std::max(least, (away_m - beside_m) / (ahead_m - beside_m));
   }
+
+  /// Without a look no volume is in view: openings count.
+  bool by_share(const Request& request) const { return share > 0 && looks > 0 && sees_all_around(request); }
 
   /// Of the unknown volume in view of all sensors of a vehicle with a LiDAR, the share that is cave grows
   /// with the area A of the opening and its distance d from the flown path: as sqrt(A) (1 + d)^1.5, A in m^2,

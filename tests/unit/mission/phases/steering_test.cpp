@@ -97,7 +97,8 @@ TEST_F(SteeringTest, OnceHomeIsTheGoalNoPlanIsFlown) {
   EXPECT_EQ(onboard.flight.trajectory_end(), end);
 }
 
-// With 0.08 s for localization, and 0.06 s for mapping, a scan changes the course 0.2 s after it was taken.
+// With 0.08 s for localization, and 0.06 s for mapping, a scan that begins a plan changes the course 0.2 s
+// after it.
 TEST_F(SteeringTest, APlanIsFlownSixtyMillisecondsAfterTheMapHasChanged) {
   under_way(Vec3(14, 0, 1.5));
   advance(0.5);
