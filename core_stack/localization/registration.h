@@ -24,7 +24,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 struct RegistrationOptions {
   std::int64_t max_passes = 4;
   std::int64_t max_steps = 6;
-  double degenerate_fraction = 0.002;
+  double degenerate_fraction = 0.01;
   std::int64_t min_matches = 60;
   double min_matched_fraction = 0.25;
 };

@@ -503,7 +503,7 @@ void MissionControl::on_map(const MapNews& news) {
   if (team_) team_->work.note_seen(news.bodies, news.stamp);
   onboard_.flight.prepare_landing(news.descent_path);
   if (news.blocked_after_m) leave_blocked_path(*news.blocked_after_m);
-  steering_.step();
+  steering_.on_map(news.seen_with);
 }
 
 void MissionControl::leave_blocked_path(double after_m) {

@@ -118,7 +118,7 @@ void SensorPipeline::map_scan(const std::shared_ptr<const LidarScan>& scan) {
                          : onboard_.load.sheds(Relief::half_the_scans)  ? 2
                                                                         : 1;
   if (scans_++ % every != 0) return;
-  integrate(scan->stamp,
+  integrate(SeenWith::lidar, scan->stamp,
             [scan, history = onboard_.flight.estimator().history(), filter = onboard_.options.perception,
              range_m = onboard_.options.mission.mapping_range_m,
              self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
@@ -131,10 +131,10 @@ void SensorPipeline::map_scan(const std::shared_ptr<const LidarScan>& scan) {
 void SensorPipeline::on_depth(const std::shared_ptr<const DepthImage>& image) {
   if (images_[image->model.get()]++ % 2 == 1 && onboard_.load.sheds(Relief::half_the_images)) return;
   if (onboard_.flight.estimator().guesses()) return;
-  integrate(image->stamp, [image, history = onboard_.flight.estimator().history(),
-                           self_m = onboard_.vehicle.radius_m + kSelfMargin_m] {
-    return to_rays(*image, history, self_m);
-  });
+  integrate(
+      SeenWith::camera, image->stamp,
+      [image, history = onboard_.flight.estimator().history(),
+       self_m = onboard_.vehicle.radius_m + kSelfMargin_m] { return to_rays(*image, history, self_m); });
 }
 
 /// By now the pose is as accurate as it gets: scans of that moment have been located.
@@ -178,7 +178,7 @@ void SensorPipeline::keep_picture(const std::shared_ptr<const RgbFrame>& frame, 
       });
 }
 
-void SensorPipeline::integrate(TimeNs stamp, std::function<std::vector<Ray>()> make_rays) {
+void SensorPipeline::integrate(SeenWith sensor, TimeNs stamp, std::function<std::vector<Ray>()> make_rays) {
   if (closed_ || stamp > onboard_.now() || onboard_.executive.under_way("mapping") >= kMaxWaiting) return;
   struct Mapped {
     MapNews news;
@@ -188,12 +188,13 @@ void SensorPipeline::integrate(TimeNs stamp, std::function<std::vector<Ray>()> m
   };
   onboard_.map.job(
       "mapping", kMappingBudget,
-      [make_rays = std::move(make_rays), stamp, others = wiring_.others(stamp),
+      [make_rays = std::move(make_rays), sensor, stamp, others = wiring_.others(stamp),
        look_for_others = wiring_.look_for_others(), here = onboard_.flight.state().position,
        question = wiring_.ask()](Explorer& explorer) {
         Mapped out;
         MapNews& news = out.news;
         std::vector<Ray> rays = make_rays();
+        news.seen_with = sensor;
         news.stamp = stamp;
         if (look_for_others) news.bodies = bodies_in_the_air(explorer.map(), rays);
         leave_out(rays, others);

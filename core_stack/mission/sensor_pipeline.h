@@ -13,6 +13,7 @@
 #include "core_stack/localization/loam.h"
 #include "core_stack/mapping/occupancy/moving_bodies.h"
 #include "core_stack/mission/onboard/onboard.h"
+#include "core_stack/mission/state/seen_with.h"
 #include "core_stack/perception/scan_clock.h"
 #include "core_stack/vehicle/vehicle.h"
 
@@ -28,6 +29,7 @@ struct MapQuestion {
 };
 
 struct MapNews {
+  SeenWith seen_with = SeenWith::lidar;
   std::vector<CellChange> changes;
   std::optional<double> blocked_after_m;  // along `ahead`
   std::vector<Vec3> descent_path;         // as asked
@@ -76,7 +78,7 @@ class SensorPipeline {
   void note_localization(const LoamPose& pose, bool accepted);
   void keep_picture(const std::shared_ptr<const RgbFrame>& frame, const std::string& file);
   void map_scan(const std::shared_ptr<const LidarScan>& scan);
-  void integrate(TimeNs stamp, std::function<std::vector<Ray>()> make_rays);
+  void integrate(SeenWith sensor, TimeNs stamp, std::function<std::vector<Ray>()> make_rays);
 
   Onboard& onboard_;
   Wiring wiring_;

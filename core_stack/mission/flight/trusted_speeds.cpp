@@ -103,27 +103,15 @@ double slow_speed_mps(const CoreOptions& options) {
   return options.safety.slow_fraction * std::min(options.motion.max_speed_mps, kTrusted_mps);
 }
 
-namespace {
-
-/// Polynomials and plans of the receding horizon do not keep limits that differ along a path: where speeds
-/// are by trust, trajectories are sampled. A vehicle without a LiDAR sees where it looks: it gains most by
-/// planning its heading with its position.
-TrajectoryKind flown_trajectory(const MotionLimits& motion, const VehicleDescription& vehicle) {
-  if (by_trust(motion)) return TrajectoryKind::sampled;
-  if (motion.trajectory != TrajectoryKind::automatic) return motion.trajectory;
-  return vehicle.lidar ? TrajectoryKind::sampled : TrajectoryKind::horizon;
-}
-
-}  // namespace
-
 CoreOptions as_flown(CoreOptions options, const VehicleDescription& vehicle) {
   MotionLimits& motion = options.motion;
   if (by_trust(motion)) {
     const double braking_mps2 = kBrakingFraction * with_room_to_catch_up(motion).max_acceleration_mps2;
     motion.max_speed_mps = std::min(
         motion.max_speed_mps, open_space_speed_mps(options, sensed_ahead(options, vehicle), braking_mps2));
+    // Polynomials and plans of the receding horizon do not keep limits that differ along a path.
+    motion.trajectory = TrajectoryKind::sampled;
   }
-  motion.trajectory = flown_trajectory(motion, vehicle);
   return options;
 }
 

@@ -31,7 +31,7 @@ bool by_trust(const MotionLimits& motion);
 double slow_speed_mps(const CoreOptions& options);
 
 /// The options as this vehicle flies: with no more than the speed that its sensors allow in open space, which
-/// is also what its way home is planned with, and with the kind of its trajectories, never `automatic`.
+/// is also what its way home is planned with. Where speeds are by trust, trajectories are sampled.
 CoreOptions as_flown(CoreOptions options, const VehicleDescription& vehicle);
 
 /// The greatest speed of all, where the sensors see the way as far as they reach.

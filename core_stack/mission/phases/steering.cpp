@@ -5,7 +5,8 @@
 namespace karst::core {
 namespace {
 
-constexpr TimeNs kSteeringPeriod = 200 * kMillisecond, kBudget = 60 * kMillisecond;
+/// Of two scans at 10 Hz, less what their times may vary by.
+constexpr TimeNs kSteeringPeriod = 180 * kMillisecond, kBudget = 60 * kMillisecond;
 constexpr double kSame_m = 0.01;
 /// A plan that begins farther from where the vehicle is by then is not flown: it would cut a corner.
 constexpr double kOff_m = 0.05, kOff_mps = 0.25;
@@ -31,10 +32,19 @@ bool Steering::applies() const {
          path.narrow_places().empty();
 }
 
-void Steering::step() {
+/// With a LiDAR scans begin the plans. Were they begun by images, some scans would wait a period longer until
+/// they change the course.
+bool Steering::waits_for_scan(SeenWith sensor) {
+  if (sensor == SeenWith::lidar) last_scan_ = onboard_.now();
+  return sensor != SeenWith::lidar && onboard_.vehicle.lidar &&
+         onboard_.now() - last_scan_ < 2 * kSteeringPeriod;
+}
+
+void Steering::on_map(SeenWith sensor) {
   const TimeNs now = onboard_.now();
   note_goal();
-  if (!applies() || planning_ || now - last_ < kSteeringPeriod || onboard_.flight.at_rest(now + kBudget))
+  if (waits_for_scan(sensor) || !applies() || planning_ || now - last_ < kSteeringPeriod ||
+      onboard_.flight.at_rest(now + kBudget))
     return;
   planning_ = true;
   last_ = now;

@@ -5,6 +5,7 @@
 
 #include "core_stack/mission/phases/goal_tracker.h"
 #include "core_stack/mission/phases/path_execution.h"
+#include "core_stack/mission/state/seen_with.h"
 
 namespace karst::core {
 
@@ -17,10 +18,11 @@ class Steering {
   };
   Steering(Onboard& onboard, const Parts& parts) : onboard_(onboard), parts_(parts) {}
 
-  /// Call when the map has changed: a scan then changes the course soonest.
-  void step();
+  /// Call when the map has changed: what was seen then changes the course soonest.
+  void on_map(SeenWith sensor);
 
  private:
+  bool waits_for_scan(SeenWith sensor);
   bool applies() const;
   bool goal_waits() const;
   /// A LiDAR sees all around: there is nothing to turn for.
@@ -40,6 +42,7 @@ class Steering {
   std::optional<Legs> legs_;        // of the last plan
   TimeNs legs_begin_ = 0;
   TimeNs last_ = 0;
+  TimeNs last_scan_ = 0;
   bool planning_ = false;
 };
 

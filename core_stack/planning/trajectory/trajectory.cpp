@@ -165,8 +165,7 @@ void describe(OptionTable& t, MotionLimits& o) {
   t.add(
       "trajectory", o.trajectory,
       "how paths become motion: the paper's sampling, minimum-snap polynomials, or replanned with a receding "
-      "horizon while exploring; auto: a receding horizon for a vehicle without a LiDAR, else the paper's "
-      "sampling; above 2 m/s always the paper's (see " +
+      "horizon while exploring; above 2 m/s always the paper's (see " +
           doc_path("docs/planning.md") + ")");
 }
 

@@ -20,7 +20,7 @@ struct MotionLimits {
   double max_jerk_mps3 = 12.0;
   double max_heading_rate_radps = 1.0;
   double max_heading_acceleration_radps2 = 2.0;
-  TrajectoryKind trajectory = TrajectoryKind::automatic;
+  TrajectoryKind trajectory = TrajectoryKind::horizon;
   bool operator==(const MotionLimits&) const = default;
 };
 void describe(OptionTable& t, MotionLimits& o);

@@ -116,7 +116,8 @@ TEST_F(MissionControlTest, ExploresAsThePolicySaysComesHomeAndLandsAtTheStart) {
   const std::vector<Decision> script{fly_to(5), fly_to(9), explored()};
   std::size_t asked = 0;
   policy.script = [&](const DecisionRequest&) { return script[std::min(asked++, script.size() - 1)]; };
-  options.mission.append = false;  // a goal is reached before the next is asked for
+  options.motion.trajectory = TrajectoryKind::sampled;  // it looks at nothing beyond the goals
+  options.mission.append = false;                       // a goal is reached before the next is asked for
   options.mission.decision_period_s = 600;
   double farthest_m = 0;
   const MissionResult result =
@@ -142,6 +143,7 @@ TEST_F(MissionControlTest, ExploresOnWhenThePolicySaidExploredOnce) {
   const std::vector<Decision> script{fly_to(5), explored(), fly_to(9), explored()};
   std::size_t asked = 0;
   policy.script = [&](const DecisionRequest&) { return script[std::min(asked++, script.size() - 1)]; };
+  options.motion.trajectory = TrajectoryKind::sampled;
   options.mission.append = false;
   options.mission.decision_period_s = 600;
   double farthest_m = 0;
@@ -248,6 +250,7 @@ TEST_F(MissionControlTest, IsOverWhenTheVehicleHitsRock) {
 
 TEST_F(MissionControlTest, IgnoresSensorMessagesFromTheFuture) {
   vehicle.battery_s = 40;
+  options.motion.trajectory = TrajectoryKind::sampled;
   bool scanned =
       false;  // once: of two scans in turn that need the same correction the clock is taken to be set
   const MissionResult result = fly([&](MissionControl& mission) {

@@ -178,17 +178,5 @@ TEST(TrustedSpeeds, WhereTheyApplyTrajectoriesAreSampled) {
   }
 }
 
-TEST(TrustedSpeeds, AVehicleWithoutALidarPlansItsHeadingTooUnlessTheMissionSaysOtherwise) {
-  CoreOptions o;
-  const VehicleDescription without;
-  ASSERT_EQ(o.motion.trajectory, TrajectoryKind::automatic);
-  EXPECT_EQ(as_flown(o, with_lidar()).motion.trajectory, TrajectoryKind::sampled);
-  EXPECT_EQ(as_flown(o, without).motion.trajectory, TrajectoryKind::horizon);
-  for (const TrajectoryKind kind : {TrajectoryKind::sampled, TrajectoryKind::polynomial}) {
-    o.motion.trajectory = kind;
-    EXPECT_EQ(as_flown(o, without).motion.trajectory, kind);
-  }
-}
-
 }  // namespace
 }  // namespace karst::core

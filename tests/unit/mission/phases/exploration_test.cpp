@@ -8,6 +8,7 @@ namespace {
 
 class ExplorationTest : public OnboardTest {
  protected:
+  using OnboardTest::OnboardTest;
   /// In a hall around the vehicle that is open at one end, or closed.
   void begin(const std::vector<std::string>& open = {"x+"}) {
     onboard.map.while_idle().integrate(
@@ -56,6 +57,17 @@ class ExplorationTest : public OnboardTest {
                            .teammates = [] { return std::vector<TeammateState>{}; }}};
 };
 
+CoreOptions sampled() {
+  CoreOptions o;
+  o.localization.source = PoseSource::pose_sensor;
+  o.motion.trajectory = TrajectoryKind::sampled;
+  return o;
+}
+
+struct SampledExplorationTest : ExplorationTest {
+  SampledExplorationTest() : ExplorationTest(with_lidar(), sampled()) {}
+};
+
 TEST_F(ExplorationTest, AnAcceptedGoalIsFlownToClaimedAndReached) {
   begin();
   const Vec3 place(6, 0, 1);
@@ -74,7 +86,7 @@ TEST_F(ExplorationTest, AnAcceptedGoalIsFlownToClaimedAndReached) {
 
 // As it was: the next path was appended to one that the map had closed while the policy was asked, and the
 // vehicle braked for it.
-TEST_F(ExplorationTest, NothingIsAppendedToAPathThatTheMapHasClosedMeanwhile) {
+TEST_F(SampledExplorationTest, NothingIsAppendedToAPathThatTheMapHasClosedMeanwhile) {
   begin();
   answer = [&](const DecisionRequest&) { return go_to({asked == 1 ? 5.0 : 9.0, 0, 1}); };
   bool appends = false;

@@ -37,7 +37,7 @@ class SteeringTest : public OnboardTest {
   }
   void steps(double s) {
     for (double t = 0; t < s; t += 0.1) {
-      steering.step();
+      steering.on_map(SeenWith::lidar);
       advance(0.1);
     }
   }
@@ -102,7 +102,7 @@ TEST_F(SteeringTest, OnceHomeIsTheGoalNoPlanIsFlown) {
 TEST_F(SteeringTest, APlanIsFlownSixtyMillisecondsAfterTheMapHasChanged) {
   under_way(Vec3(14, 0, 1.5));
   advance(0.5);
-  steering.step();
+  steering.on_map(SeenWith::lidar);
   const TimeNs end = onboard.flight.trajectory_end();
   advance(0.05);
   EXPECT_EQ(onboard.flight.trajectory_end(), end);
@@ -110,11 +110,24 @@ TEST_F(SteeringTest, APlanIsFlownSixtyMillisecondsAfterTheMapHasChanged) {
   EXPECT_GT(onboard.flight.trajectory_end(), end);
 }
 
+TEST_F(SteeringTest, ImagesBeginPlansOnlyWhereScansStayAway) {
+  under_way(Vec3(14, 0, 1.5));
+  steering.on_map(SeenWith::lidar);
+  advance(0.3);
+  const TimeNs end = onboard.flight.trajectory_end();
+  steering.on_map(SeenWith::camera);
+  advance(0.09);
+  EXPECT_EQ(onboard.flight.trajectory_end(), end) << "the next scan would wait for this plan";
+  steering.on_map(SeenWith::camera);
+  advance(0.1);
+  EXPECT_GT(onboard.flight.trajectory_end(), end);
+}
+
 // A plan takes a moment; meanwhile the policy may have chosen another goal.
 TEST_F(SteeringTest, APlanForAFormerGoalIsNotFlown) {
   under_way(Vec3(14, 0, 1.5));
   advance(0.5);
-  steering.step();  // asks for a plan
+  steering.on_map(SeenWith::lidar);  // asks for a plan
   const TimeNs end = onboard.flight.trajectory_end();
   accept(Vec3(-1, 0, 1.5));
   advance(0.2);
@@ -126,7 +139,7 @@ TEST_F(SteeringTest, APlanForAFormerGoalIsNotFlown) {
 TEST_F(SteeringTest, APlanIsNotFlownFasterThanIsAllowedByThen) {
   under_way(Vec3(14, 0, 1.5));
   advance(0.5);
-  steering.step();
+  steering.on_map(SeenWith::lidar);
   onboard.flight.cap_speed(now(), 0.5);
   advance(0.2);
   for (int i = 0; i < 40; ++i) {
