@@ -62,8 +62,6 @@ void describe(OptionTable& t, LoamOptions& o) {
   t.section("features", o.features);
   t.section("map", o.map);
   t.section("registration", o.registration);
-  t.add("unpredicted_degenerate_fraction", o.unpredicted_degenerate_fraction, "", 0, 0.3,
-        "replaces registration.degenerate_fraction where no IMU predicts the pose of a sweep");
   t.add("scan_to_scan", o.scan_to_scan,
         "fit each sweep to the one before first; auto: where the prediction does not cover it");
   t.add("max_correction", o.max_correction_m, "m", 0.05, 20, "a fit farther from its guess is not believed");
@@ -147,7 +145,8 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
   const std::size_t coarsest = map_.surfaces().size() - 1;
   const bool weak = !prediction.covered || since_s > kLongGap || gap_;
   RegistrationOptions registration = options_.registration;
-  if (weak) registration.degenerate_fraction = options_.unpredicted_degenerate_fraction;
+  // A few matches tell less of the height than an IMU does, but more than the velocity of the last sweep.
+  if (weak) registration.degenerate_fraction_vertical = registration.degenerate_fraction;
   const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
     return fit_to_map(cloud, map, guess, first_level, registration, workspace_);
   };

@@ -25,9 +25,6 @@ struct LoamOptions {
   FeatureOptions features;
   LocalMapOptions map;
   RegistrationOptions registration;
-  /// Replaces the registration's `degenerate_fraction` where no IMU predicts the sweep's pose. A few matches
-  /// tell less about a direction than an IMU does, but more than the velocity of the last sweep.
-  double unpredicted_degenerate_fraction = 0.002;
   ScanToScan scan_to_scan = ScanToScan::automatic;
   double max_correction_m = 1.5;  // greatest correction of the prediction by a fit; larger ones are rejected
   double max_correction_rad = 0.35;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kMatchesPerChunk = 256;
 constexpr double kFreeDeviation = 100;  // m, along directions that no match constrains
+constexpr double kVertical = 0.75;      // squared cosine with the vertical: within 30 degrees
 constexpr double kSmallStep = 1e-4;     // m: below this Gauss-Newton has converged
 constexpr double kSettledMove = 0.2;    // voxels: after a smaller move the matches are reused
 
@@ -53,6 +54,8 @@ void describe(OptionTable& t, RegistrationOptions& o) {
   t.add("max_steps", o.max_steps, 1, 100, "Gauss-Newton steps at most, each time");
   t.add("degenerate_fraction", o.degenerate_fraction, "", 0, 0.3,
         "a direction is free if the mean squared cosine between it and the surfaces' normals is less");
+  t.add("degenerate_fraction_vertical", o.degenerate_fraction_vertical, "", 0, 0.3,
+        "the same for the vertical, where an IMU predicts the sweep's pose");
   t.add("min_matches", o.min_matches, 6, 100'000, "that a valid pose needs");
   t.add("min_matched_fraction", o.min_matched_fraction, "", 0, 1,
         "of a sweep's features that must match for a valid pose");
@@ -79,7 +82,7 @@ NormalEquations linearize(const std::vector<Match>& matches, const Pose& T_world
   return sums;
 }
 
-Step solve(const NormalEquations& equations, double degenerate_fraction) {
+Step solve(const NormalEquations& equations, double degenerate_fraction, double vertical_fraction) {
   const double length = std::sqrt(equations.squared_distance / equations.weight);  // L
   Vector6 unit;
   unit << 1, 1, 1, 1 / length, 1 / length, 1 / length;
@@ -89,7 +92,9 @@ Step solve(const NormalEquations& equations, double degenerate_fraction) {
   Vector6 inverse, variance;
   for (int i = 0; i < 6; ++i) {
     const double value = solver.eigenvalues()[i];
-    const bool free = value < degenerate_fraction * equations.weight;
+    const double up = solver.eigenvectors()(2, i);
+    const double limit = up * up > kVertical ? vertical_fraction : degenerate_fraction;
+    const bool free = value < limit * equations.weight;
     step.free_directions += free;
     inverse[i] = free ? 0 : 1 / value;
     variance[i] = free ? kFreeDeviation * kFreeDeviation : 1 / value;
@@ -119,7 +124,7 @@ Fit fit_to_map(const Cloud& cloud_body, const LocalMap& map, const Pose& guess, 
     double moved = 0, width_m = voxel_m;
     for (std::int64_t i = 0; i < options.max_steps; ++i) {
       const NormalEquations equations = linearize(matches.all, fit.T_world_body, width_m, workspace.threads);
-      const Step step = solve(equations, options.degenerate_fraction);
+      const Step step = solve(equations, options.degenerate_fraction, options.degenerate_fraction_vertical);
       Pose& T = fit.T_world_body;
       T.position += step.change.head<3>();
       T.orientation = (T.orientation * exp_so3(step.change.tail<3>())).normalized();

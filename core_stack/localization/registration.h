@@ -12,7 +12,7 @@
 // at the matches' mean distance L, so that all six unknowns are in metres. The information matrix divided by
 // the sum of the weights then holds mean squared cosines between directions of motion and normals. An
 // eigenvector with an eigenvalue below a threshold is a direction the sweep does not observe: there the pose
-// keeps its initial guess, and the covariance is huge.
+// keeps its initial guess, and the covariance is huge. The threshold is higher for the vertical.
 #pragma once
 #include "core_stack/localization/matching.h"
 #include "core_stack/localization/state.h"
@@ -24,7 +24,9 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 struct RegistrationOptions {
   std::int64_t max_passes = 4;
   std::int64_t max_steps = 6;
-  double degenerate_fraction = 0.01;
+  double degenerate_fraction = 0.002;
+  /// Of the vertical, which IMU and barometer tell as well: better than a few matches do.
+  double degenerate_fraction_vertical = 0.01;
   std::int64_t min_matches = 60;
   double min_matched_fraction = 0.25;
 };
@@ -61,6 +63,6 @@ struct Step {
   Matrix6 covariance = Matrix6::Zero();
   int free_directions = 0;
 };
-Step solve(const NormalEquations& equations, double degenerate_fraction);
+Step solve(const NormalEquations& equations, double degenerate_fraction, double vertical_fraction);
 
 }  // namespace karst::core

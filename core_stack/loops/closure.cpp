@@ -71,7 +71,7 @@ Pose roughly_fitted(const SubmapRock& older, const std::vector<Vec3f>& from, Pos
         matches.push_back(m);
       }
       if (matches.size() < 60) return T;
-      const Vector6 change = solve(linearize(matches, T, reach_m, threads), kDegenerate).change;
+      const Vector6 change = solve(linearize(matches, T, reach_m, threads), kDegenerate, kDegenerate).change;
       T.position += change.head<3>();
       T.orientation = (T.orientation * exp_so3(change.tail<3>())).normalized();
       if (change.norm() < 1e-3) break;
@@ -143,7 +143,7 @@ Closure registered(const SubmapRock& older, const SubmapRock& newer, const Pose&
   }
   RegistrationOptions registration;
   registration.max_passes = 5;
-  registration.degenerate_fraction = kDegenerate;
+  registration.degenerate_fraction = registration.degenerate_fraction_vertical = kDegenerate;
   const Cloud cloud{{}, from, from};
   const Pose rough = roughly_fitted(older, from, T_older_newer, workspace.threads);
   const Fit fit = fit_to_map(cloud, older.map(), rough, 1, registration, workspace);

@@ -102,9 +102,9 @@ TEST(Registration, FreeDirectionsAreThoseThatNoSurfaceMeasures) {
   Random r(2);
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
   const auto unit = [](int i) -> Vector6 { return Vector6::Unit(i); };
-  expect_free(solve(linearize(planes({x, -x, y, -y, z, -z}, r), {}, 1, 1), 0.002), {});
-  expect_free(solve(linearize(planes({y, -y, z, -z}, r), {}, 1, 1), 0.002), {unit(0)});
-  const Step floor = solve(linearize(planes({-z}, r), {}, 1, 1), 0.002);
+  expect_free(solve(linearize(planes({x, -x, y, -y, z, -z}, r), {}, 1, 1), 0.002, 0.002), {});
+  expect_free(solve(linearize(planes({y, -y, z, -z}, r), {}, 1, 1), 0.002, 0.002), {unit(0)});
+  const Step floor = solve(linearize(planes({-z}, r), {}, 1, 1), 0.002, 0.002);
   EXPECT_EQ(floor.free_directions, 3);
   for (const int i : {0, 1}) EXPECT_GT(floor.covariance(i, i), 50 * 50);
   EXPECT_LT(floor.covariance(2, 2), 1e-4);
@@ -113,11 +113,28 @@ TEST(Registration, FreeDirectionsAreThoseThatNoSurfaceMeasures) {
   EXPECT_GT(floor.covariance(5, 5), 1);
 }
 
+// A mean squared cosine of 0.0064 with the normals.
+TEST(Registration, TheVerticalHasALimitOfItsOwn) {
+  Random r(4);
+  const auto walls = [](const Vec3& along, const Vec3& a, const Vec3& b) {
+    const Vec3 tilt = 0.08 * along;
+    return std::vector<Vec3>{(a + tilt).normalized(), (tilt - a).normalized(), (b + tilt).normalized(),
+                             (tilt - b).normalized()};
+  };
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ();
+  const NormalEquations shaft = linearize(planes(walls(z, x, y), r), {}, 1, 1),
+                        corridor = linearize(planes(walls(x, y, z), r), {}, 1, 1);
+  expect_free(solve(shaft, 0.002, 0.01), {Vector6::Unit(2)});
+  expect_free(solve(shaft, 0.002, 0.002), {});
+  expect_free(solve(corridor, 0.002, 0.01), {});
+  expect_free(solve(corridor, 0.01, 0.01), {Vector6::Unit(0)});
+}
+
 TEST(Registration, NothingMovesAlongAFreeDirection) {
   Random r(3);
   std::vector<Match> corridor = planes({Vec3::UnitY(), -Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitZ()}, r);
   for (Match& m : corridor) m.p += Vec3(0.3, 0.2, -0.1);
-  const Step step = solve(linearize(corridor, {}, 1, 1), 0.002);
+  const Step step = solve(linearize(corridor, {}, 1, 1), 0.002, 0.002);
   EXPECT_NEAR(step.change[0], 0, 1e-9);
   EXPECT_NEAR(step.change[1], -0.2, 0.01);
   EXPECT_NEAR(step.change[2], 0.1, 0.01);
