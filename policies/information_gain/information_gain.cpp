@@ -1,4 +1,5 @@
 // Chooses the frontier with the most expected information gain per second of flight to it.
+#include <karst/diminishing_gain.h>
 #include <karst/expected_gain.h>
 #include <karst/ranking.h>
 #include <karst/straight_path.h>
@@ -13,6 +14,7 @@ class InformationGain : public karst::Policy {
   void parameters(karst::Parameters& p) override {
     open_.parameters(p);
     gain_.parameters(p);
+    diminishing_.parameters(p);
     p.add("max_volume", max_volume_m3_, "m^3", 0.1, 10000, "more expected volume counts as this");
     p.add("min_volume", min_volume_m3_, "m^3", 0, 100,
           "frontiers that show less are left until nothing else is to be had");
@@ -29,7 +31,10 @@ class InformationGain : public karst::Policy {
     const std::vector<karst::OpenFrontiers::Candidate> open = open_.of(request);
     if (open.empty()) return open_.none_left(request);
     open_.found_some();
-    return karst::Decision::fly(ranked(request, candidates_of(request, open)));
+    const Ranked best = ranked(request, candidates_of(request, open));
+    if (diminishing_.over(request, best.most_m3))
+      return karst::Decision::explored("what is left shows too little to be cave");
+    return karst::Decision::fly(best.goals);
   }
 
   void on_event(const karst::Event& event) override { open_.on_event(event); }
@@ -40,7 +45,12 @@ class InformationGain : public karst::Policy {
   struct Candidate {
     const karst::Frontier* frontier;
     double time_s, passed_m3;
-    double most;  // upper bound of its score
+    double most_m3;  // upper bound of what it shows
+    double most;     // of its score
+  };
+  struct Ranked {
+    std::vector<karst::Goal> goals;
+    double most_m3 = 0;  // that any candidate may show
   };
 
   /// Sorted by the upper bound of the score, highest first.
@@ -54,7 +64,7 @@ class InformationGain : public karst::Policy {
       const double most = std::min(gain_.most_m3(request, *f), max_volume_m3_);
       const double passed = sees_what_it_passes ? passed_m3(request, *f) : 0;
       const double keep = karst::under_way(request, *f) ? 1 + keep_ : 1;
-      out.push_back({f, t, passed, keep * (most + passed) / t});
+      out.push_back({f, t, passed, most + passed, keep * (most + passed) / t});
     }
     std::sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
       return a.most != b.most ? a.most > b.most : a.frontier->id < b.frontier->id;
@@ -73,26 +83,29 @@ class InformationGain : public karst::Policy {
   }
 
   /// Gain queries are expensive: stops once no candidate's upper bound exceeds the best score so far.
-  std::vector<karst::Goal> ranked(const karst::Request& request, const std::vector<Candidate>& candidates) {
-    std::vector<karst::Goal> goals;
+  Ranked ranked(const karst::Request& request, const std::vector<Candidate>& candidates) {
+    Ranked out;
     double best = 0;
-    for (std::size_t begin = 0; begin < candidates.size(); begin += batch) {
+    std::size_t begin = 0;
+    for (; begin < candidates.size(); begin += batch) {
       if (candidates[begin].most < best || request.should_stop()) break;
       const std::size_t end = std::min(begin + batch, candidates.size());
       std::vector<const karst::Frontier*> some;
       for (std::size_t i = begin; i < end; ++i) some.push_back(candidates[i].frontier);
       const std::vector<double> volumes_m3 = gain_.volumes_m3(request, some);
       for (std::size_t i = begin; i < end; ++i) {
-        goals.push_back(goal(request, candidates[i], volumes_m3[i - begin]));
-        best = std::max(best, goals.back().score);
+        const double shown_m3 = std::min(volumes_m3[i - begin], max_volume_m3_) + candidates[i].passed_m3;
+        out.most_m3 = std::max(out.most_m3, shown_m3);
+        out.goals.push_back(goal(request, candidates[i], shown_m3));
+        best = std::max(best, out.goals.back().score);
       }
     }
-    karst::keep_best(goals, static_cast<std::size_t>(goals_));
-    return goals;
+    for (; begin < candidates.size(); ++begin) out.most_m3 = std::max(out.most_m3, candidates[begin].most_m3);
+    karst::keep_best(out.goals, static_cast<std::size_t>(goals_));
+    return out;
   }
 
-  karst::Goal goal(const karst::Request& request, const Candidate& c, double volume_m3) const {
-    const double shown_m3 = std::min(volume_m3, max_volume_m3_) + c.passed_m3;
+  karst::Goal goal(const karst::Request& request, const Candidate& c, double shown_m3) const {
     double score = shown_m3 / c.time_s;
     if (shown_m3 < min_volume_m3_) score *= 1e-3;
     if (karst::under_way(request, *c.frontier)) score *= 1 + keep_;
@@ -104,6 +117,7 @@ class InformationGain : public karst::Policy {
 
   karst::OpenFrontiers open_;
   karst::ExpectedGain gain_;
+  karst::DiminishingGain diminishing_;
   double max_volume_m3_ = 200.0;
   double min_volume_m3_ = 0.3;
   double stop_s_ = 1.5;
@@ -116,5 +130,5 @@ class InformationGain : public karst::Policy {
 
 }  // namespace
 
-KARST_POLICY(InformationGain, "information_gain", "1.2.1",
+KARST_POLICY(InformationGain, "information_gain", "1.3.0",
              "Flies to the frontier that shows the most unknown space for the time it takes.")

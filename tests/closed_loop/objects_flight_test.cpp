@@ -28,7 +28,8 @@ std::string passage(const std::filesystem::path& folder) {
 }
 
 const std::string kSettings =
-    " --policy nearest_frontier --set simulator.pose.fitted=always --set localization.source=pose_sensor";
+    " --policy nearest_frontier --set simulator.pose.fitted=always --set localization.source=pose_sensor"
+    " --set motion.trajectory=sampled";  // flights that happen to look at half of the objects
 
 std::vector<json> lines_of(const std::filesystem::path& file) {
   std::vector<json> out;

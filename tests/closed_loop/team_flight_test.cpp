@@ -208,7 +208,7 @@ TEST(Team, ThatMeetHeadOnInAPassageInRadioSilenceDoNotTouchAndDoNotWaitForLong) 
     const Flown f = fly(cave, run,
                         team_of(2, "return_to_base",
                                 "--set team.stagger=" + stagger +
-                                    " --set simulator.battery_minutes=1.75min"
+                                    " --set simulator.battery_minutes=1.75min --set motion.trajectory=sampled"
                                     " --set radio.silent_after=5s --set radio.silent_for=200s"));
     ASSERT_EQ(f.robots.size(), 2u) << f.output.text;
     EXPECT_EQ(f.count(f.truth, "contact"), 0);

@@ -25,7 +25,7 @@ class Steering {
   bool waits_for_scan(SeenWith sensor);
   bool applies() const;
   bool goal_waits() const;
-  /// A LiDAR sees all around: there is nothing to turn for.
+  /// A LiDAR sees all around: there is nothing to turn for on the way.
   bool turns() const { return !onboard_.vehicle.lidar; }
   void note_goal();
   MotionLimits limits(const Goal& goal) const;

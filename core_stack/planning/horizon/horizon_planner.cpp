@@ -13,6 +13,7 @@ constexpr double kHorizon_s = kLegs * seconds(kLeg);
 constexpr int kHorizonSamples = static_cast<int>(kLegs * kLeg / kRolloutPeriod);
 constexpr int kViews = 4;  // along the horizon
 constexpr int kFirst = 24, kElites = 6, kChildren = 8, kRounds = 3;
+constexpr int kMoreForHeadings = 2;  // times as many candidates where headings vary, too
 constexpr double kSpread = 0.6, kHeadingSpread_rad = 0.8;  // of the first round; of the maximal speed
 constexpr double kNarrower = 0.5;                          // a round
 constexpr double kBetter_s = 0.1;                          // than what is under way, to be worth a change
@@ -38,9 +39,10 @@ class Search {
 
   std::optional<HorizonPlan> run() {
     std::vector<Candidate> best;
+    const int many = q_.turns ? kMoreForHeadings : 1;
     const std::vector<Legs> seeds = first_guesses();
     for (const Legs& legs : seeds) consider(legs, best);
-    for (int i = 0; i < kFirst; ++i)
+    for (int i = 0; i < many * kFirst; ++i)
       consider(varied(seeds[static_cast<std::size_t>(i) % seeds.size()], 1), best);
     double spread = 1;
     for (int round = 0; round < kRounds; ++round) {
@@ -49,7 +51,7 @@ class Search {
       std::vector<Legs> parents;
       for (const Candidate& c : best) parents.push_back(c.legs);
       for (const Legs& legs : parents)
-        for (int i = 0; i < kChildren; ++i) consider(varied(legs, spread), best);
+        for (int i = 0; i < many * kChildren; ++i) consider(varied(legs, spread), best);
     }
     keep_best(best);
     if (best.empty() || !(best.front().value_s > value_under_way() + kBetter_s)) return std::nullopt;
@@ -130,7 +132,9 @@ class Search {
     return legs;
   }
 
-  void consider(const Legs& legs, std::vector<Candidate>& out) {
+  void consider(Legs legs, std::vector<Candidate>& out) {
+    if (!q_.turns && std::isfinite(q_.goal.heading_rad))
+      for (Leg& leg : legs) leg.heading_rad = q_.goal.heading_rad;
     Candidate c{legs, roll_out(q_.start, legs, q_.limits, q_.braking_mps2)};
     if (!level(c.motion.samples) || !clear(c.motion.samples)) return;
     const std::optional<double> left_s = time_left_s(c.motion.end);

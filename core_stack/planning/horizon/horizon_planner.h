@@ -29,7 +29,7 @@ struct HorizonQuery {
   std::vector<TrajectorySample> under_way;  // the trajectory as it is, from the start on, every 100 ms
   std::optional<Legs> last;                 // of the last plan, moved on to the start
   HorizonGoal goal;
-  bool turns = true;  // or else it keeps its heading
+  bool turns = true;  // to what it passes; or else it faces as the goal asks
   MotionLimits limits;
   double braking_mps2 = 1;
   double clearance_m = 0.6;

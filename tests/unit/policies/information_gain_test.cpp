@@ -72,6 +72,40 @@ TEST(InformationGain, ScoreIsTheVolumeInSightOverTheTimeItTakes) {
   EXPECT_NEAR(goal_of(d, 2).score, b / (2 + 7 / 1.0), 1e-9);
 }
 
+TEST(InformationGain, AMinuteOfFlightsToWhatShowsLittleThatHaveShownNothingIsEnough) {
+  const DrawnMap map = passage();
+  const double more_m3 = volume_in_sight(map, map.place('a'), 2.5),
+               less_m3 = volume_in_sight(map, map.place('b'), 2.5);
+  ASSERT_GT(more_m3, less_m3 + 1);
+  const std::string little = std::to_string((more_m3 + less_m3) / 2);
+  const auto outcomes = [&](const char* give_up) {
+    Bench bench(karst_plugin_entry(), map,
+                {{"gain_range", "2.5"},
+                 {"gain_share", "0"},
+                 {"gain_depth", "100"},
+                 {"little", little},
+                 {"give_up", give_up}});
+    bench.sensors = {karst::test::sphere_sensor(10)};
+    bench.position = map.place('s');
+    bench.offer(1, map.place('b'), map.place('b'));
+    const karst::Frontier little = bench.frontiers.front();
+    std::vector<karst_outcome_t> out;
+    const auto decide = [&](double time_s) {
+      bench.time_s = time_s;
+      out.push_back(bench.decide().outcome);
+    };
+    for (const double t : {10.0, 69.0, 71.0}) decide(t);
+    bench.offer(2, map.place('a'), map.place('a'));  // shows much
+    decide(72);
+    bench.frontiers = {little};
+    for (const double t : {100.0, 131.0, 133.0}) decide(t);
+    return out;
+  };
+  constexpr karst_outcome_t kFly = KARST_OUTCOME_GOALS, kOver = KARST_OUTCOME_EXPLORED;
+  EXPECT_EQ(outcomes("60"), (std::vector{kFly, kFly, kOver, kFly, kFly, kFly, kOver}));
+  EXPECT_EQ(outcomes("0"), std::vector(7, kFly));
+}
+
 TEST(InformationGain, WithALidarTheShareOfTheViewCountsThatIsExpectedToBeCave) {
   const DrawnMap map = passage();
   const karst::Vec3 off(0.11, 0.07, 0.03), at = map.place('a') + off;

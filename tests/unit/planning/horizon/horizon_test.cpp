@@ -219,6 +219,18 @@ TEST_F(HorizonTest, TurnsToWhatItHasNotSeenWhereThatIsWorthIt) {
   EXPECT_GT(sees->time_left_s, fast->time_left_s - 0.3) << "it costs time";
 }
 
+// As it was: a vehicle with a LiDAR never faced as the goal asked, and its colour camera saw little.
+TEST_F(HorizonTest, AVehicleThatNeedNotTurnOnTheWayFacesAsTheGoalAsks) {
+  query.turns = false;
+  query.start.heading_rad = 0.4;
+  const auto keeps = plan();
+  query.goal.heading_rad = -1.2;
+  const auto faces = plan();
+  ASSERT_TRUE(keeps && faces);
+  EXPECT_NEAR(keeps->samples.back().heading_rad, 0.4, 1e-9);
+  EXPECT_NEAR(faces->samples.back().heading_rad, -1.2, 0.05);
+}
+
 TEST_F(HorizonTest, WithoutAWayToTheGoalThereIsNoPlan) {
   query.goal.position = {30, 4, 2};
   EXPECT_FALSE(plan());
