@@ -55,7 +55,7 @@ void describe(OptionTable& t, RegistrationOptions& o) {
   t.add("degenerate_fraction", o.degenerate_fraction, "", 0, 0.3,
         "a direction is free if the mean squared cosine between it and the surfaces' normals is less");
   t.add("degenerate_fraction_vertical", o.degenerate_fraction_vertical, "", 0, 0.3,
-        "the same for the vertical, where an IMU predicts the sweep's pose");
+        "the same for the vertical, if it is more, and an IMU predicts the sweep's pose");
   t.add("min_matches", o.min_matches, 6, 100'000, "that a valid pose needs");
   t.add("min_matched_fraction", o.min_matched_fraction, "", 0, 1,
         "of a sweep's features that must match for a valid pose");
@@ -93,7 +93,8 @@ Step solve(const NormalEquations& equations, double degenerate_fraction, double 
   for (int i = 0; i < 6; ++i) {
     const double value = solver.eigenvalues()[i];
     const double up = solver.eigenvectors()(2, i);
-    const double limit = up * up > kVertical ? vertical_fraction : degenerate_fraction;
+    const double limit =
+        up * up > kVertical ? std::max(vertical_fraction, degenerate_fraction) : degenerate_fraction;
     const bool free = value < limit * equations.weight;
     step.free_directions += free;
     inverse[i] = free ? 0 : 1 / value;

@@ -45,8 +45,8 @@ class InformationGain : public karst::Policy {
   struct Candidate {
     const karst::Frontier* frontier;
     double time_s, passed_m3;
-    double most_m3;  // upper bound of what it shows
-    double most;     // of its score
+    double most_m3;     // upper bound of what it shows
+    double best_score;  // of its score
   };
   struct Ranked {
     std::vector<karst::Goal> goals;
@@ -61,13 +61,13 @@ class InformationGain : public karst::Policy {
     for (const auto& [f, revisit_penalty_m] : open) {
       const double t = stop_s_ + (f->path_length_m + revisit_penalty_m) / (cruise_ * request.max_speed_mps) +
                        turn_s_ * karst::turn_fraction(request, *f);
-      const double most = std::min(gain_.most_m3(request, *f), max_volume_m3_);
       const double passed = sees_what_it_passes ? passed_m3(request, *f) : 0;
+      const double most = std::min(gain_.most_m3(request, *f), max_volume_m3_) + passed;
       const double keep = karst::under_way(request, *f) ? 1 + keep_ : 1;
-      out.push_back({f, t, passed, most + passed, keep * (most + passed) / t});
+      out.push_back({f, t, passed, most, keep * most / t});
     }
     std::sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
-      return a.most != b.most ? a.most > b.most : a.frontier->id < b.frontier->id;
+      return a.best_score != b.best_score ? a.best_score > b.best_score : a.frontier->id < b.frontier->id;
     });
     return out;
   }
@@ -88,7 +88,7 @@ class InformationGain : public karst::Policy {
     double best = 0;
     std::size_t begin = 0;
     for (; begin < candidates.size(); begin += batch) {
-      if (candidates[begin].most < best || request.should_stop()) break;
+      if (candidates[begin].best_score < best || request.should_stop()) break;
       const std::size_t end = std::min(begin + batch, candidates.size());
       std::vector<const karst::Frontier*> some;
       for (std::size_t i = begin; i < end; ++i) some.push_back(candidates[i].frontier);

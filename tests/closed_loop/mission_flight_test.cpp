@@ -125,7 +125,8 @@ TEST_P(Alternative, FliesAndLandsWithoutTouchingAnything) {
 INSTANTIATE_TEST_SUITE_P(Settings, Alternative,
                          ::testing::Values("planning.planner=rrt_connect",
                                            "planning.planner=bit_star --set planning.planner_iterations=300",
-                                           "motion.trajectory=polynomial", "mission.append=false"));
+                                           "motion.trajectory=polynomial", "motion.trajectory=sampled",
+                                           "mission.append=false --set motion.trajectory=sampled"));
 
 TEST(CameraOnly, ExploresASmallCaveToNinetyPercent) {
   const auto run = fresh_folder("flight_camera") / "run";

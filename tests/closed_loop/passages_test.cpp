@@ -66,7 +66,7 @@ nlohmann::json corridor_flight(const std::string& name, int seed, const std::str
 }
 
 TEST_P(Corridor, HalfAMetreWiderThanTheVehicleIsFlownThrough) {
-  const nlohmann::json m = corridor_flight("corridor", GetParam(), "0.08m");
+  const nlohmann::json m = corridor_flight("corridor", GetParam(), "0.08m --set motion.trajectory=sampled");
   ASSERT_TRUE(m.is_object());
   // As it was: with the next path appended, the places that the one under way may pass closely were
   // forgotten.

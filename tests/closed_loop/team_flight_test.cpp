@@ -205,6 +205,8 @@ TEST(Team, ThatMeetHeadOnInAPassageInRadioSilenceDoNotTouchAndDoNotWaitForLong) 
   for (const std::string stagger : {"20s", "25s"}) {
     SCOPED_TRACE(stagger);
     const auto run = folder / ("run_" + stagger);
+    // Sampled: with a receding horizon robot 1 turns back farther in, and takes longer than its battery lasts
+    // to get by robot 2.
     const Flown f = fly(cave, run,
                         team_of(2, "return_to_base",
                                 "--set team.stagger=" + stagger +

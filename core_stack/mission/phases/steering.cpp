@@ -7,6 +7,8 @@ namespace {
 
 /// Of two scans at 10 Hz, less what their times may vary by.
 constexpr TimeNs kSteeringPeriod = 180 * kMillisecond, kBudget = 60 * kMillisecond;
+/// Longer than between scans of which three in four are left out.
+constexpr TimeNs kScansStayAway = 500 * kMillisecond;
 constexpr double kSame_m = 0.01;
 /// A plan that begins farther from where the vehicle is by then is not flown: it would cut a corner.
 constexpr double kOff_m = 0.05, kOff_mps = 0.25;
@@ -34,16 +36,15 @@ bool Steering::applies() const {
 
 /// With a LiDAR scans begin the plans. Were they begun by images, some scans would wait a period longer until
 /// they change the course.
-bool Steering::waits_for_scan(SeenWith sensor) {
-  if (sensor == SeenWith::lidar) last_scan_ = onboard_.now();
-  return sensor != SeenWith::lidar && onboard_.vehicle.lidar &&
-         onboard_.now() - last_scan_ < 2 * kSteeringPeriod;
+bool Steering::begins_plans(SeenWith sensor) const {
+  return sensor == SeenWith::lidar || !onboard_.vehicle.lidar || onboard_.now() - last_scan_ > kScansStayAway;
 }
 
 void Steering::on_map(SeenWith sensor) {
   const TimeNs now = onboard_.now();
   note_goal();
-  if (waits_for_scan(sensor) || !applies() || planning_ || now - last_ < kSteeringPeriod ||
+  if (sensor == SeenWith::lidar) last_scan_ = now;
+  if (!begins_plans(sensor) || !applies() || planning_ || now - last_ < kSteeringPeriod ||
       onboard_.flight.at_rest(now + kBudget))
     return;
   planning_ = true;

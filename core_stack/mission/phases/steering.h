@@ -22,7 +22,7 @@ class Steering {
   void on_map(SeenWith sensor);
 
  private:
-  bool waits_for_scan(SeenWith sensor);
+  bool begins_plans(SeenWith sensor) const;
   bool applies() const;
   bool goal_waits() const;
   /// A LiDAR sees all around: there is nothing to turn for on the way.

@@ -1,8 +1,11 @@
-// When to stop: what is left promises little, and flights to such places have shown nothing for a while.
+// When to stop: what is left promises little, and flights to such places have shown little for a while.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 
+#include <karst/memory.h>
 #include <karst/policy.h>
 
 namespace karst {
@@ -18,21 +21,31 @@ class DiminishingGain {
           "when only such frontiers are left, and flying to them has shown less than `little` for this long, "
           "the cave counts as explored; 0: never");
   }
+  void memory(Memory& m) { m.add(by_clearance_); }
 
-  /// Call at every decision, with the most that any frontier left may show.
+  /// Call with every request that has frontiers, and with the most that any of them may show. Where the core
+  /// offers narrow passages when nothing else is left, they have a time of their own.
   bool over(const Request& request, double most_m3) {
     const karst_map_info_t map = request.map.info();
     const double known_m3 = static_cast<double>(map.free_cells) * std::pow(map.resolution_m, 3);
-    if (since_ns_ < 0 || most_m3 >= little_m3 || known_m3 >= since_m3_ + little_m3) {
-      since_ns_ = request.stamp_ns;
-      since_m3_ = known_m3;
-    }
-    return give_up_s > 0 && static_cast<double>(request.stamp_ns - since_ns_) * 1e-9 > give_up_s;
+    Spent& spent =
+        by_clearance_.try_emplace(request.clearance_m, Spent{0, request.stamp_ns, known_m3}).first->second;
+    // While the vehicle is held on the spot, nobody asks, and no time is spent.
+    spent.time_s += std::min(longest_step_s, static_cast<double>(request.stamp_ns - spent.last_ns) * 1e-9);
+    spent.last_ns = request.stamp_ns;
+    if (most_m3 >= little_m3 || known_m3 >= spent.known_m3 + little_m3)
+      spent = {0, request.stamp_ns, known_m3};
+    return give_up_s > 0 && spent.time_s > give_up_s;
   }
 
  private:
-  std::int64_t since_ns_ = -1;  // something was last promised, or found
-  double since_m3_ = 0;         // the volume known then
+  static constexpr double longest_step_s = 5;
+  struct Spent {
+    double time_s;  // since something was last promised, or found
+    std::int64_t last_ns;
+    double known_m3;  // when it was
+  };
+  std::map<double, Spent> by_clearance_;
 };
 
 }  // namespace karst

@@ -72,39 +72,63 @@ TEST(InformationGain, ScoreIsTheVolumeInSightOverTheTimeItTakes) {
   EXPECT_NEAR(goal_of(d, 2).score, b / (2 + 7 / 1.0), 1e-9);
 }
 
-TEST(InformationGain, AMinuteOfFlightsToWhatShowsLittleThatHaveShownNothingIsEnough) {
-  const DrawnMap map = passage();
-  const double more_m3 = volume_in_sight(map, map.place('a'), 2.5),
-               less_m3 = volume_in_sight(map, map.place('b'), 2.5);
-  ASSERT_GT(more_m3, less_m3 + 1);
-  const std::string little = std::to_string((more_m3 + less_m3) / 2);
-  const auto outcomes = [&](const char* give_up) {
-    Bench bench(karst_plugin_entry(), map,
-                {{"gain_range", "2.5"},
-                 {"gain_share", "0"},
-                 {"gain_depth", "100"},
-                 {"little", little},
-                 {"give_up", give_up}});
+class LittleIsLeft : public ::testing::Test {
+ protected:
+  explicit LittleIsLeft(const char* give_up = "60")
+      : bench(karst_plugin_entry(), map,
+              {{"gain_range", "2.5"},
+               {"gain_share", "0"},
+               {"gain_depth", "100"},
+               {"little", std::to_string((much_m3 + little_m3) / 2)},
+               {"give_up", give_up}}) {
     bench.sensors = {karst::test::sphere_sensor(10)};
     bench.position = map.place('s');
+    offer_little();
+  }
+  void offer_little() {
+    bench.frontiers.clear();
     bench.offer(1, map.place('b'), map.place('b'));
-    const karst::Frontier little = bench.frontiers.front();
-    std::vector<karst_outcome_t> out;
-    const auto decide = [&](double time_s) {
-      bench.time_s = time_s;
-      out.push_back(bench.decide().outcome);
-    };
-    for (const double t : {10.0, 69.0, 71.0}) decide(t);
-    bench.offer(2, map.place('a'), map.place('a'));  // shows much
-    decide(72);
-    bench.frontiers = {little};
-    for (const double t : {100.0, 131.0, 133.0}) decide(t);
-    return out;
-  };
-  constexpr karst_outcome_t kFly = KARST_OUTCOME_GOALS, kOver = KARST_OUTCOME_EXPLORED;
-  EXPECT_EQ(outcomes("60"), (std::vector{kFly, kFly, kOver, kFly, kFly, kFly, kOver}));
-  EXPECT_EQ(outcomes("0"), std::vector(7, kFly));
+  }
+  void offer_much() { bench.offer(2, map.place('a'), map.place('a')); }
+  /// Asks every second; how many times it is to fly before the cave counts as explored, 200 at most.
+  int flies() {
+    for (int i = 0; i < 200; ++i) {
+      bench.time_s += 1;
+      if (bench.decide().outcome == KARST_OUTCOME_EXPLORED) return i;
+    }
+    return 200;
+  }
+
+  const DrawnMap map = passage();
+  const double much_m3 = volume_in_sight(map, map.place('a'), 2.5),
+               little_m3 = volume_in_sight(map, map.place('b'), 2.5);
+  Bench bench;
+};
+struct LittleIsFlownToForEver : LittleIsLeft {
+  LittleIsFlownToForEver() : LittleIsLeft("0") {}
+};
+
+TEST_F(LittleIsLeft, AMinuteOfFlightsToItIsEnough) {
+  ASSERT_GT(much_m3, little_m3 + 1);
+  EXPECT_EQ(flies(), 61);
+  EXPECT_EQ(flies(), 0) << "it stays so";
 }
+
+TEST_F(LittleIsLeft, WhatShowsMuchBeginsTheMinuteAnew) {
+  flies();
+  offer_much();
+  EXPECT_EQ(flies(), 200);
+  offer_little();
+  EXPECT_EQ(flies(), 60);
+}
+
+TEST_F(LittleIsLeft, TimeInWhichNobodyAsksDoesNotCount) {
+  bench.decide();
+  bench.time_s += 600;  // held by a pilot
+  EXPECT_GT(flies(), 50);
+}
+
+TEST_F(LittleIsFlownToForEver, IfThePolicyIsToldTo) { EXPECT_EQ(flies(), 200); }
 
 TEST(InformationGain, WithALidarTheShareOfTheViewCountsThatIsExpectedToBeCave) {
   const DrawnMap map = passage();

@@ -113,10 +113,10 @@ TEST_F(SteeringTest, APlanIsFlownSixtyMillisecondsAfterTheMapHasChanged) {
 TEST_F(SteeringTest, ImagesBeginPlansOnlyWhereScansStayAway) {
   under_way(Vec3(14, 0, 1.5));
   steering.on_map(SeenWith::lidar);
-  advance(0.3);
+  advance(0.4);
   const TimeNs end = onboard.flight.trajectory_end();
   steering.on_map(SeenWith::camera);
-  advance(0.09);
+  advance(0.15);
   EXPECT_EQ(onboard.flight.trajectory_end(), end) << "the next scan would wait for this plan";
   steering.on_map(SeenWith::camera);
   advance(0.1);
