@@ -48,6 +48,12 @@ Cloud compensated(const Features& features, const SweepMotion& motion) {
   return {moved(features.edges), moved(features.planes), moved(features.surface)};
 }
 
+/// A few matches tell less of the height than an IMU does, but more than the velocity of the last sweep.
+RegistrationOptions without_imu(RegistrationOptions o) {
+  o.degenerate_fraction_vertical = o.degenerate_fraction;
+  return o;
+}
+
 /// Distance between the first points of a sweep under two assumed motions.
 double moved_within(double length_s, const Twist& a, const Twist& b) {
   return length_s *
@@ -144,9 +150,7 @@ LoamPose Loam::locate(const Sweep& sweep, const StateHistory& states, LoamEffort
 
   const std::size_t coarsest = map_.surfaces().size() - 1;
   const bool weak = !prediction.covered || since_s > kLongGap || gap_;
-  RegistrationOptions registration = options_.registration;
-  // A few matches tell less of the height than an IMU does, but more than the velocity of the last sweep.
-  if (weak) registration.degenerate_fraction_vertical = registration.degenerate_fraction;
+  const RegistrationOptions registration = weak ? without_imu(options_.registration) : options_.registration;
   const auto fit = [&](const LocalMap& map, const Pose& guess, std::size_t first_level) {
     return fit_to_map(cloud, map, guess, first_level, registration, workspace_);
   };

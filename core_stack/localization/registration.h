@@ -12,7 +12,7 @@
 // at the matches' mean distance L, so that all six unknowns are in metres. The information matrix divided by
 // the sum of the weights then holds mean squared cosines between directions of motion and normals. An
 // eigenvector with an eigenvalue below a threshold is a direction the sweep does not observe: there the pose
-// keeps its initial guess, and the covariance is huge. The threshold is higher for the vertical.
+// keeps its initial guess, and the covariance is huge. The vertical may have a higher threshold.
 #pragma once
 #include "core_stack/localization/matching.h"
 #include "core_stack/localization/state.h"
